@@ -10,7 +10,7 @@ import tempfile
 import numpy as np
 
 TOLERANCE_N = 1e-6  # below the resolution of force sensors; rounding leaves some 1e-12
-MATERIALS = ("layered", "sponge")  # with a correction; with a surface that lags and slowing
+MATERIALS = ("layered", "sponge")  # with a correction; with slowing
 METHODS = ("trend+greedy", "greedy", "voxel", "trend")
 
 
@@ -118,11 +118,8 @@ def curve(drive, d):
     """G(d) of one drive curve."""
     u = d / drive["reference_depth_m"]
     r = min(u, 1.0)
-    knots = [(k + 1) / 8 for k in range(7)] if "knot_N" in drive else []
     value = sum(c * r ** (k + 1) for k, c in enumerate(drive["coefficient_N"]))
-    value += sum(c * max(0.0, r - at) ** 3 for c, at in zip(drive.get("knot_N", []), knots))
     slope = sum((k + 1) * c for k, c in enumerate(drive["coefficient_N"]))
-    slope += sum(3 * c * (1 - at) ** 2 for c, at in zip(drive.get("knot_N", []), knots))
     return value + slope * max(0.0, u - 1)
 
 
@@ -135,32 +132,20 @@ class Features:
         self.deepest = domain["upper"][i] + 0.15 * (domain["upper"][i] - domain["lower"][i])
         self.branches = [(part, one.get("slowing", 0.0), one["parts"][0]["drive"]["reference_depth_m"])
                          for one in self.specs if one["kind"] == "maxwell_spectrum" for part in one["parts"]]
-        self.lag = self.specs[kinds.index("surface_lag")]["drive"] if "surface_lag" in kinds else None
         self.z, self.G, self.lowpass = np.zeros(len(self.branches)), np.zeros(len(self.branches)), {}
-        self.bend, self.d, self.xi, self.t = {}, 0.0, 0.0, None
-
-    def advance(self, xi, keep, gain):
-        G = np.array([curve(part["drive"], xi) for part, _, _ in self.branches])
-        return (keep * self.z + gain * (G - self.G) if self.t is not None else 0 * G), G
+        self.bend, self.d, self.t = {}, 0.0, None
 
     def update(self, t, p_hat, v):
         present = max(0.0, p_hat - self.p0)
-        d, h, xi = min(present, self.deepest), 0.0 if self.t is None else t - self.t, 0.0
-        half = self.xi if self.xi > max(self.d, d) else (self.xi + d) / 2
-        tau = np.array([part["relaxation_time_s"] * np.exp(slowing * min(half / D, 1)) for part, slowing, D in self.branches])
-        keep = np.exp(-h / tau)
-        gain = tau * (1 - keep) / h if h > 0 else 0 * tau
-        xi = d
-        if self.lag is not None and h > 0:
-            def push(at):
-                return curve(self.lag, at) + self.advance(at, keep, gain)[0].sum()
-            low, high = d, self.xi
-            if push(low) < 0 and high - low > 1e-12:
-                xi = high
-                while push(high) > 0 and high - low > 1e-15:
-                    xi = (low + high) / 2
-                    low, high = (low, xi) if push(xi) > 0 else (xi, high)
-        self.z, self.G = self.advance(xi, keep, gain)
+        d, h = min(present, self.deepest), 0.0 if self.t is None else t - self.t
+        half = (self.d + d) / 2
+        G = np.array([curve(part["drive"], d) for part, _, _ in self.branches])
+        if h > 0:
+            tau = np.array([part["relaxation_time_s"] * np.exp(slowing * min(half / D, 1))
+                            for part, slowing, D in self.branches])
+            keep = np.exp(-h / tau)
+            self.z = keep * self.z + tau * (1 - keep) / h * (G - self.G)
+        self.G = G
         x, first = [], 0
         for i, one in enumerate(self.specs):
             kind, value = one["kind"], 0.0
@@ -174,8 +159,6 @@ class Features:
             elif kind == "maxwell_spectrum":
                 value = self.z[first:first + len(one["parts"])].sum()
                 first += len(one["parts"])
-            elif kind == "surface_lag":
-                value = xi - d
             elif kind in ("stops", "creep"):
                 for k, part in enumerate(one["parts"]):
                     r, b = part["threshold_m"], self.bend.get((i, k), 0.0)
@@ -188,7 +171,7 @@ class Features:
                     self.bend[i, k] = b
                     value += curve(part["drive"], d) * b / r
             x.append(value)
-        self.d, self.xi, self.t = d, xi, t
+        self.d, self.t = d, t
         return np.array(x)
 
 

@@ -10,38 +10,31 @@ namespace {
 // Smaller values are set to 0: denormals would slow every later operation.
 constexpr double kNothing_N = 1e-30;
 
-PALPATE_INLINE void prepare_groups(const BranchLanes::Group* group, std::size_t count, double step_s, double surface_m,
-                                   BranchLanes::Step* step) noexcept {
+// z' = keep z + gain (g(d') - g(d)). `step_s`: 0 for no step.
+PALPATE_INLINE void advance_groups(const BranchLanes::Group* group, std::size_t count, double last_depth_m,
+                                   double depth_m, double step_s, PartMemory* memory) noexcept {
+  const double middle_m = 0.5 * (last_depth_m + depth_m);
   const double per_step = 1.0 / step_s;
   for (std::size_t i = 0; i < count; ++i) {
-    V4 time_s = group[i].relaxation_time_s;
-    if (group[i].slows) {
-      const V4 strain = surface_m / group[i].slowing_depth_m;
-      V4 clock = group[i].slowing * (strain > 1.0 ? V4{} + 1.0 : strain);
-      to_exponential(clock);
-      time_s *= clock;
-    }
-    V4& keep = step[i].keep;
-    keep = -step_s / time_s;
-    to_exponential(keep);
-    step[i].gain = time_s * (1.0 - keep) * per_step;
-  }
-}
-
-PALPATE_INLINE double advance_groups(const BranchLanes::Group* group, std::size_t count, const BranchLanes::Step* step,
-                                     double surface_m, const PartMemory* from, PartMemory* to) noexcept {
-  V4 sum{};
-  for (std::size_t i = 0; i < count; ++i) {
     V4 drive;
-    evaluate_curve(drive, group[i].drive, surface_m);
-    const V4& last = from->value[i];
-    const V4 kept = step[i].keep * (((last < kNothing_N) & (last > -kNothing_N)) ? V4{} : last);
-    const V4 force = kept + step[i].gain * (drive - from->drive_N[i]);
-    to->value[i] = force;
-    to->drive_N[i] = drive;
-    sum += force;
+    evaluate_curve(drive, group[i].drive, depth_m);
+    if (step_s > 0.0) {
+      V4 time_s = group[i].relaxation_time_s;
+      if (group[i].slows) {
+        const V4 strain = middle_m / group[i].slowing_depth_m;
+        V4 clock = group[i].slowing * (strain > 1.0 ? V4{} + 1.0 : strain);
+        to_exponential(clock);
+        time_s *= clock;
+      }
+      V4 keep = -step_s / time_s;
+      to_exponential(keep);
+      const V4 gain = time_s * (1.0 - keep) * per_step;
+      const V4& last = memory->value[i];
+      const V4 kept = keep * (((last < kNothing_N) & (last > -kNothing_N)) ? V4{} : last);
+      memory->value[i] = kept + gain * (drive - memory->drive_N[i]);
+    }
+    memory->drive_N[i] = drive;
   }
-  return (sum[0] + sum[1]) + (sum[2] + sum[3]);
 }
 
 // The bends after half a step of creep.
@@ -108,9 +101,6 @@ void CurveLanes::set(std::size_t lane, const DriveCurve& drive) noexcept {
   for (std::size_t k = 0; k < kDriveCoefficients; ++k) coefficient_N[k][lane] = drive.coefficient_N[k];
   reference_depth_m[lane] = drive.reference_depth_m;
   least_m = std::min(least_m, drive.reference_depth_m);
-  if (!drive.has_knots) return;
-  has_knots = true;
-  for (std::size_t k = 0; k < kDriveKnots; ++k) knot_N[k][lane] = drive.knot_N[k];
 }
 
 std::size_t BranchLanes::add(const DriveCurve& drive, double relaxation_time_s, double slowing,
@@ -125,13 +115,8 @@ std::size_t BranchLanes::add(const DriveCurve& drive, double relaxation_time_s, 
   return count_++;
 }
 
-void BranchLanes::prepare(double step_s, double surface_m, Step* step) const noexcept {
-  if (step_s > 0.0) return call<prepare_groups>(groups_.data(), groups_.size(), step_s, surface_m, step);
-  for (std::size_t i = 0; i < groups_.size(); ++i) step[i] = {V4{} + 1.0, V4{}};
-}
-
-double BranchLanes::advance(const Step* step, double surface_m, const PartMemory& from, PartMemory& to) const noexcept {
-  return call<advance_groups>(groups_.data(), groups_.size(), step, surface_m, &from, &to);
+void BranchLanes::advance(double last_depth_m, double depth_m, double step_s, PartMemory& memory) const noexcept {
+  call<advance_groups>(groups_.data(), groups_.size(), last_depth_m, depth_m, step_s, &memory);
 }
 
 std::size_t BristleLanes::add(const DriveCurve& drive, double threshold_m, double creep_time_s) {

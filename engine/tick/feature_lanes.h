@@ -1,9 +1,9 @@
-// The parts of features, each with a drive curve g of the depth d, or of the surface s where it lags, four at a time in
-// SIMD lanes, with arithmetic operations only, so that results are bit-identical on every processor:
+// The parts of features, each with a drive curve g of the depth d, four at a time in SIMD lanes, with arithmetic
+// operations only, so that results are bit-identical on every processor:
 //   Maxwell branch     dz/dt = g'(d) dd/dt - z / tau: a spring g and a dashpot in series. g = d / tau: a low-pass.
 //   stop operator      s' = clamp(s + d' - d, -r, r), 0 out of contact: a bristle that bends by at most r, then slips.
 //   creeping bristle   dq/dt = dd/dt - (q / tau) (q / r)^2: slips at every deflection; a hold: t^-1/2.
-// A `slowing` b multiplies every tau by exp(b s / reference depth): where a fluid is squeezed through closing pores.
+// A `slowing` b multiplies every tau by exp(b d / reference depth): where a fluid is squeezed through closing pores.
 //
 // Every part is passive if g rises (branch) or is not negative (bristles). With q = g(d) - z, dq/dt = z / tau, a branch
 // dissipates (d - g^-1(q)) (g(d) - q) / tau >= 0 for any tau; the rest of its power changes the stored energy
@@ -20,44 +20,28 @@
 namespace palpate {
 
 inline constexpr std::size_t kDriveCoefficients = 4;
-inline constexpr std::size_t kDriveKnots = 7;
 
-// Sets `value` to g(d), a force at depth d: the elastic response, or a Maxwell branch before it relaxes.
-//   g(d) = sum_k coefficient_N[k] u^(k+1) + sum_k knot_N[k] max(0, u - (k + 1) / (knots + 1))^3,  u = d /
-//   reference_depth_m
+// Sets `value` to g(d), a force at depth d: a Maxwell branch before it relaxes, or the friction of a bristle.
+//   g(d) = sum_k coefficient_N[k] u^(k+1),  u = d / reference_depth_m
 // Beyond u = 1, g continues along its tangent. `curve`: a DriveCurve for one Number, or CurveLanes for four at once;
 // the results are bit-identical.
 template <typename Number, typename Curve>
 [[gnu::always_inline]] inline void evaluate_curve(Number& value, const Curve& curve, double depth_m) noexcept {
-  const auto knot_position = [](std::size_t k) { return static_cast<double>(k + 1) / (kDriveKnots + 1); };
   const Number u = depth_m / curve.reference_depth_m;
   const Number inside = u > 1.0 ? Number{} + 1.0 : u;
   Number sum{};
   for (std::size_t k = kDriveCoefficients; k-- > 0;) sum = (sum + curve.coefficient_N[k]) * inside;
-  Number knots{};
-  for (std::size_t k = 0; curve.has_knots && k < kDriveKnots; ++k) {
-    const Number above = inside - knot_position(k);
-    const Number beyond = above > 0.0 ? above : Number{};
-    knots += curve.knot_N[k] * beyond * beyond * beyond;
-  }
-  value = sum + knots;
+  value = sum;
   if (depth_m > curve.least_reference_m()) [[unlikely]] {
     Number slope{};  // dg/du at u = 1
     for (std::size_t k = kDriveCoefficients; k-- > 0;) slope += static_cast<double>(k + 1) * curve.coefficient_N[k];
-    Number knots_slope{};
-    for (std::size_t k = 0; curve.has_knots && k < kDriveKnots; ++k) {
-      const double beyond = 1.0 - knot_position(k);
-      knots_slope += 3.0 * (curve.knot_N[k] * beyond * beyond);
-    }
-    value = u > 1.0 ? value + (slope + knots_slope) * (u - 1.0) : value;
+    value = u > 1.0 ? value + slope * (u - 1.0) : value;
   }
 }
 
 struct DriveCurve {
   double reference_depth_m = 1.0;
   std::array<double, kDriveCoefficients> coefficient_N{};
-  bool has_knots = false;
-  std::array<double, kDriveKnots> knot_N{};
 
   double at(double depth_m) const noexcept {
     double value = 0.0;
@@ -105,10 +89,8 @@ PALPATE_INLINE void to_exponential(V4& x) noexcept {
 // Four drive curves. An unused lane has g = 0.
 struct alignas(sizeof(V4)) CurveLanes {
   V4 coefficient_N[kDriveCoefficients]{};
-  V4 knot_N[kDriveKnots]{};
   V4 reference_depth_m{1.0, 1.0, 1.0, 1.0};
   double least_m = std::numeric_limits<double>::infinity();  // the smallest of the four reference depths
-  bool has_knots = false;
 
   void set(std::size_t lane, const DriveCurve& drive) noexcept;
   double least_reference_m() const noexcept { return least_m; }
@@ -120,7 +102,7 @@ inline constexpr std::size_t kMaxLaneGroups = 16;
 // The state of the parts of a filter: the groups of branches, then those of bristles.
 struct alignas(sizeof(V4)) PartMemory {
   V4 value[kMaxLaneGroups];    // the force z of a branch, N; the deflection s or q of a bristle, m
-  V4 drive_N[kMaxLaneGroups];  // g(s) of a branch at the same time
+  V4 drive_N[kMaxLaneGroups];  // g(d) of a branch at the same time
 };
 
 // The sum of `count` lanes from index `first`.
@@ -135,20 +117,13 @@ class BranchLanes {
     V4 slowing_depth_m{1.0, 1.0, 1.0, 1.0};
     bool slows = false;  // whether one lane has a slowing
   };
-  // z' = keep z + gain (g(s') - g(s)).
-  struct alignas(sizeof(V4)) Step {
-    V4 keep;
-    V4 gain;
-  };
   // Returns the index of the branch among the lanes.
   std::size_t add(const DriveCurve& drive, double relaxation_time_s, double slowing = 0.0,
                   double slowing_depth_m = 1.0);
   std::size_t groups() const noexcept { return groups_.size(); }
 
-  // Computes the steps of all groups for the surface at `surface_m`. With `step_s` 0 the state will not change.
-  void prepare(double step_s, double surface_m, Step* step) const noexcept;
-  // Advances all branches to the surface at `surface_m` and returns the sum of their forces, N; `to` may be `from`.
-  double advance(const Step* step, double surface_m, const PartMemory& from, PartMemory& to) const noexcept;
+  // Advances all branches from the last depth by `step_s`; with 0 no force changes.
+  void advance(double last_depth_m, double depth_m, double step_s, PartMemory& memory) const noexcept;
 
  private:
   std::vector<Group> groups_;

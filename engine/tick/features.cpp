@@ -7,20 +7,6 @@
 #include "engine/base/text.h"
 
 namespace palpate {
-namespace {
-
-// The source text that exported models share with the library.
-namespace surface_search {
-using real = double;
-#define R(x) (x)
-#define HELD_N const auto&
-#include "engine/tick/surface.inc"
-#undef HELD_N
-#undef R
-}  // namespace surface_search
-
-}  // namespace
-
 double surface_position_m(const std::vector<FeatureSpec>& specs) noexcept {
   for (const FeatureSpec& spec : specs)
     if (spec.kind == FeatureKind::depth) return spec.surface_position_m;
@@ -46,7 +32,6 @@ FeaturePlan::FeaturePlan(const std::vector<FeatureSpec>& specs, double deepest_m
   assert(!specs.empty() && specs.size() <= kMaxFeatures);
   for (std::size_t i = 0; i < specs_.size(); ++i) {
     const FeatureSpec& spec = specs_[i];
-    if (spec.kind == FeatureKind::surface_lag) lag_ = i;
     for (std::size_t p = 0; p < spec.part_count; ++p) {
       const FeaturePart& part = spec.parts[p];
       const double creep_time_s = spec.kind == FeatureKind::creep ? part.relaxation_time_s : 0.0;
@@ -66,7 +51,7 @@ void FeaturePlan::update(FeatureState& state, const ToolSample& sample, const Mo
   if (!state.started) state = {};
   state.vector.in_contact = in_contact(sample, surface_position_m_);
   const double step_s = state.started ? std::max(0.0, sample.time_s - state.time_s) : 0.0;
-  const double surface_m = advance_branches(state, depth_m, step_s);
+  branches_.advance(state.depth_m, depth_m, step_s, state.memory);
   V4 bristle_N[kMaxLaneGroups];
   const std::size_t first_bristles = branches_.groups();
   bristles_.advance(state.depth_m, depth_m, step_s, state.memory.value + first_bristles, bristle_N + first_bristles);
@@ -91,9 +76,6 @@ void FeaturePlan::update(FeatureState& state, const ToolSample& sample, const Mo
       case FeatureKind::maxwell_spectrum:
         value = sum_of_lanes(state.memory.value, first_lane_[i], spec.part_count);
         break;
-      case FeatureKind::surface_lag:
-        value = surface_m - depth_m;
-        break;
       case FeatureKind::stops:
       case FeatureKind::creep:
         value = sum_of_lanes(bristle_N, first_lane_[i], spec.part_count);
@@ -103,25 +85,6 @@ void FeaturePlan::update(FeatureState& state, const ToolSample& sample, const Mo
   state.started = true;
   state.time_s = sample.time_s;
   state.depth_m = depth_m;
-  state.surface_m = surface_m;
-}
-
-// Returns the surface.
-double FeaturePlan::advance_branches(FeatureState& state, double depth_m, double step_s) const noexcept {
-  BranchLanes::Step step[kMaxLaneGroups];
-  branches_.prepare(step_s, surface_search::halfway_m(state.surface_m, state.depth_m, depth_m), step);
-  if (lag_ == kMaxFeatures || !(step_s > 0.0)) {
-    branches_.advance(step, depth_m, state.memory, state.memory);
-    return depth_m;
-  }
-  PartMemory trial;
-  const auto held_N = [&](double surface_m) {
-    return specs_[lag_].drive.at(surface_m) + branches_.advance(step, surface_m, state.memory, trial);
-  };
-  const double surface_m = surface_search::surface_above_m(held_N, depth_m, state.surface_m);
-  std::copy_n(trial.value, branches_.groups(), state.memory.value);
-  std::copy_n(trial.drive_N, branches_.groups(), state.memory.drive_N);
-  return surface_m;
 }
 
 void FeaturePlan::adopt(FeatureState& state, const FeaturePlan& plan, const FeatureState& before) const noexcept {
@@ -130,7 +93,6 @@ void FeaturePlan::adopt(FeatureState& state, const FeaturePlan& plan, const Feat
     for (std::size_t k = 0; k < plan.specs_.size(); ++k) {
       if (specs_[i] != plan.specs_[k]) continue;
       state.vector.values[i] = before.vector.values[k];
-      if (i == lag_) state.surface_m = before.surface_m;
       for (std::size_t p = 0; p < specs_[i].part_count; ++p) {
         const std::size_t lane = first_lane_[i] + p, old = plan.first_lane_[k] + p;
         const auto copy = [&](V4* to, const V4* from) {

@@ -6,10 +6,9 @@
 //   lowpass_velocity  y with dy/dt = (dd/dt - y) / tau                      [m/s]
 //   maxwell_spectrum  sum of branches z                                     [N]
 //   stops, creep      sum of bristles                                       [N]
-//   surface_lag       s - d, s the depth of the material's surface          [m]
 // The tool is in contact beyond the depth feature's `surface_position_m`. In free air the material relaxes.
 // Sources: Hoever & Harders (2009), eq. 1 (low-pass); Visintin (1994) (stops); Bergstrom & Boyce (1998) (creep);
-// Johnson (1985), 6.5 (the surface lags); Lai & Mow (1980) (slowing).
+// Lai & Mow (1980) (slowing).
 // Thread guarantee: value types; `update` is wait-free, allocates nothing and never throws; one thread at a time.
 #pragma once
 
@@ -28,31 +27,28 @@ namespace palpate {
 inline constexpr std::size_t kMaxFeatures = 8;
 inline constexpr std::size_t kMaxFeatureParts = 8;
 
-enum class FeatureKind { depth, velocity, lowpass_velocity, maxwell_spectrum, stops, creep, surface_lag };
+enum class FeatureKind { depth, velocity, lowpass_velocity, maxwell_spectrum, stops, creep };
 
 struct FeatureKindFacts {
   std::string_view name;    // in model files and column names
   std::string_view unit;    // end of the column name
   bool has_time = false;    // has one time constant
-  bool has_drive = false;   // has a drive curve of its own
   bool is_branch = false;   // consists of Maxwell branches
   bool is_bristle = false;  // consists of bristles
 };
 // One row for each kind, in the order of FeatureKind.
-inline constexpr std::array<FeatureKindFacts, 7> kFeatureKinds{{
+inline constexpr std::array<FeatureKindFacts, 6> kFeatureKinds{{
     {.name = "depth", .unit = "_m"},
     {.name = "velocity", .unit = "_m_per_s"},
     {.name = "lowpass_velocity", .unit = "s_m_per_s", .has_time = true},
     {.name = "maxwell_spectrum", .unit = "s_N", .is_branch = true},
     {.name = "stops", .unit = "mm_N", .is_bristle = true},
     {.name = "creep", .unit = "s_N", .is_bristle = true},
-    {.name = "surface_lag", .unit = "_m", .has_drive = true},
 }};
 constexpr const FeatureKindFacts& facts_of(FeatureKind kind) noexcept {
   return kFeatureKinds[static_cast<std::size_t>(kind)];
 }
 constexpr bool has_time(FeatureKind kind) noexcept { return facts_of(kind).has_time; }
-constexpr bool has_drive(FeatureKind kind) noexcept { return facts_of(kind).has_drive; }
 constexpr bool is_branch(FeatureKind kind) noexcept { return facts_of(kind).is_branch; }
 constexpr bool is_bristle(FeatureKind kind) noexcept { return facts_of(kind).is_bristle; }
 // Is a sum of up to kMaxFeatureParts parts.
@@ -70,7 +66,6 @@ struct FeaturePart {
 struct FeatureSpec {
   FeatureKind kind = FeatureKind::depth;
   double relaxation_time_s = 0.0;  // lowpass_velocity
-  DriveCurve drive{};              // E of surface_lag
   std::size_t part_count = 0;      // maxwell_spectrum, stops and creep
   std::array<FeaturePart, kMaxFeatureParts> parts{};
   double slowing = 0.0;             // b of maxwell_spectrum
@@ -93,8 +88,7 @@ struct FeatureVector {
 // The state of the filters of one list of features. Trivially copyable.
 struct alignas(sizeof(V4)) FeatureState {
   FeatureVector vector;
-  double depth_m = 0.0;    // at the last sample, at most the deepest of the plan
-  double surface_m = 0.0;  // s >= depth_m; equal without a surface_lag
+  double depth_m = 0.0;  // at the last sample, at most the deepest of the plan
   double time_s = 0.0;
   bool started = false;
   PartMemory memory{};
@@ -123,13 +117,10 @@ class FeaturePlan {
   void adopt(FeatureState& state, const FeaturePlan& plan, const FeatureState& before) const noexcept;
 
  private:
-  double advance_branches(FeatureState& state, double depth_m, double step_s) const noexcept;
-
   std::vector<FeatureSpec> specs_;
   std::array<std::size_t, kMaxFeatures> first_lane_{};  // of each feature in PartMemory
   BranchLanes branches_;
   BristleLanes bristles_;
-  std::size_t lag_ = kMaxFeatures;  // index of the surface_lag; kMaxFeatures: none
   double surface_position_m_ = 0.0, deepest_m_;
 };
 
@@ -152,7 +143,6 @@ class FeatureFilter {
   void adopt(const FeatureFilter& before) noexcept { plan_.adopt(state_, before.plan_, before.state_); }
   // The result of the last `update`.
   const FeatureVector& vector() const noexcept { return state_.vector; }
-  double surface_m() const noexcept { return state_.surface_m; }
 
  private:
   FeaturePlan plan_;

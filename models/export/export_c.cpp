@@ -62,18 +62,17 @@ class CText {
 
 std::string value_text(std::size_t index) { return std::string("value[").append(std::to_string(index)).append("]"); }
 
-using PartRow = std::array<double, 3 + kDriveCoefficients + kDriveKnots>;
+using PartRow = std::array<double, 3 + kDriveCoefficients>;
 
 PartRow row_of(double first, double second, const DriveCurve& drive) {
   PartRow row{first, second, drive.reference_depth_m};
   std::ranges::copy(drive.coefficient_N, row.begin() + 3);
-  if (drive.has_knots) std::ranges::copy(drive.knot_N, row.begin() + 3 + kDriveCoefficients);
   return row;
 }
 
 // The table `name`, and the text of its functions.
 void write_parts(CText& out, const std::string& name, const std::vector<PartRow>& rows, const char* functions) {
-  out.table(name + "[][3 + DRIVE_COEFFICIENTS + DRIVE_KNOTS]",
+  out.table(name + "[][3 + DRIVE_COEFFICIENTS]",
             Eigen::Map<const Eigen::MatrixXd>(rows.front().data(), std::tuple_size_v<PartRow>,
                                               static_cast<Eigen::Index>(rows.size())));
   out.add(functions);
@@ -90,12 +89,10 @@ std::string value_of(const CText& out, const FeatureSpec& spec, const std::strin
       return "first ? R(0.0) : filtered(" + value + ", depth_m - last_depth_m, step_s, " +
              out.number(spec.relaxation_time_s) + ", R(1.0))";
     case FeatureKind::maxwell_spectrum:
-      return "branches(" + range + ", step_s, first, s)";
+      return "branches(" + range + ", step_s, first)";
     case FeatureKind::stops:
     case FeatureKind::creep:
       return "bristles(" + range + ", step_s, first)";
-    case FeatureKind::surface_lag:
-      return "s - depth_m";
   }
   return "";
 }
@@ -105,7 +102,6 @@ std::string value_of(const CText& out, const FeatureSpec& spec, const std::strin
 void write_features(CText& out, const std::vector<FeatureSpec>& features) {
   std::vector<PartRow> branches;
   std::vector<PartRow> bristles;
-  std::vector<PartRow> elastic;  // of a surface lag
   std::string body;
   for (std::size_t i = 0; i < features.size(); ++i) {
     const FeatureSpec& spec = features[i];
@@ -116,32 +112,26 @@ void write_features(CText& out, const std::vector<FeatureSpec>& features) {
       if (is_bristle(spec.kind))
         bristles.push_back(row_of(part.threshold_m, spec.kind == FeatureKind::creep ? creep : 0.0, part.drive));
     }
-    if (spec.kind == FeatureKind::surface_lag) elastic.push_back(row_of(0.0, 0.0, spec.drive));
     const std::string range = std::to_string(begin) + ", " + std::to_string(begin + spec.part_count);
     body += "  " + value_text(i) + " = " + value_of(out, spec, value_text(i), range) + "; /* " + feature_name(spec) +
             " */\n";
   }
-  // Without branches the elastic response alone never holds the surface above the tool.
-  const bool branched = !branches.empty(), lags = !elastic.empty() && branched;
-  if (branched) out.add(std::string("\ntypedef real HELD_N(real surface_m);\n") + c_source::surface);
+  const bool branched = !branches.empty();
   out.add(c_source::state);
   out.add("\n/* ---- features ---- */\n\n");
   out.define("DRIVE_COEFFICIENTS", kDriveCoefficients);
-  out.define("DRIVE_KNOTS", kDriveKnots);
   out.define("BRANCHES", branches.size());
   out.define("BRISTLES", bristles.size());
   if (branched || !bristles.empty()) out.add(c_source::curve);
   if (branched || body.find("filtered(") != std::string::npos) out.add(c_source::filter);
   if (branched) write_parts(out, "branch_part", branches, c_source::branches);
-  if (lags) write_parts(out, "surface_elastic", elastic, c_source::surface_lag);
   if (!bristles.empty()) write_parts(out, "bristle_part", bristles, c_source::bristles);
   out.add(
       "\n/* `first`: nothing came before, and every filter is at rest. */\n"
-      "static void update_features(real step_s, int first) {\n  real s;\n"
+      "static void update_features(real step_s, int first) {\n"
       "  const real present_m = larger(R(0.0), motion.estimate_m - SURFACE_POSITION_M);\n"
-      "  depth_m = smaller(present_m, DEEPEST_M);\n  s = " +
-      std::string(lags ? "first ? depth_m : surface_above(step_s)" : "depth_m") +
-      ";\n  (void)step_s;\n  (void)first;\n" + body + "  last_depth_m = depth_m;\n  surface_m = s;\n}\n");
+      "  depth_m = smaller(present_m, DEEPEST_M);\n  (void)step_s;\n  (void)first;\n" +
+      body + "  last_depth_m = depth_m;\n}\n");
 }
 
 // "static real trend_of(void)": computes newtons from value[].

@@ -173,7 +173,7 @@ Result<PreparedTraining> prepare_training(SamplesPointer samples, const Training
   const Samples& table = *prepared.samples;
   auto list = plan.features == FeatureChoice::given ? Result<FeatureList>(plan.list)
               : selects_features(plan)
-                  ? select_memory_law(table, scene.jnd, dictionary(table), prepared.gains, control.at(0.1))
+                  ? select_slowing(table, scene.jnd, dictionary(table), prepared.gains, control.at(0.1))
                   : scene_list(table, scene, plan, control.at(0.1));
   if (!list) return list.error();
   ModelData& common = prepared.common;

@@ -43,7 +43,7 @@ ElasticSpline combined_spline(const std::vector<ElasticSpline>& basis, const dou
 TrendInputs::TrendInputs(const std::vector<FeatureSpec>& specs) noexcept {
   for (std::size_t i = 0; i < specs.size(); ++i) {
     const auto index = static_cast<std::uint8_t>(i);
-    // Low-pass features have no force, and the branches already follow the surface_lag.
+    // Low-pass features have no force.
     const FeatureKind kind = specs[i].kind;
     if (kind == FeatureKind::depth) depth = index;
     if (kind == FeatureKind::velocity) velocity = index;

@@ -45,18 +45,6 @@ void add_columns(std::vector<FeatureSpec>& columns, const FeatureSpec& candidate
   }
 }
 
-// The samples with the depth of the material's surface in place of that of the tool.
-Samples at_the_surface(const Samples& samples, const std::vector<FeatureSpec>& surface) {
-  Samples moved = samples;
-  FeatureFilter filter(surface);
-  for (std::size_t i = 0; i < moved.rows.size(); ++i) {
-    if (moved.begins_recording(i)) filter.reset();
-    filter.update(moved.rows[i].tool, moved.rows[i].motion);
-    moved.rows[i].motion.position_m = filter.surface_m();
-  }
-  return moved;
-}
-
 Trend trend_from(const TrendColumns& columns, const Eigen::VectorXd& x) {
   const Samples& samples = columns.samples();
   Trend trend;
@@ -182,12 +170,10 @@ Result<TrendColumns> TrendColumns::make(const Samples& samples, FeatureList list
   made.samples_ = &samples;
   made.stride_ = (samples.contact.size() + most_rows - 1) / most_rows;
   for (std::size_t i = 0; i < samples.contact.size(); i += made.stride_) made.rows_.push_back(samples.contact[i]);
-  // The columns with memory: branches, which follow the surface, and bristles.
-  std::vector<FeatureSpec> branches, bristles;
+  std::vector<FeatureSpec> memory;  // the columns of branches and bristles
   Eigen::Index columns = 0;
   for (const FeatureSpec& spec : list.features) {
-    for (std::size_t p = 0; p < spec.part_count; ++p)
-      add_columns(is_branch(spec.kind) ? branches : bristles, spec, p, samples.depth_m);
+    for (std::size_t p = 0; p < spec.part_count; ++p) add_columns(memory, spec, p, samples.depth_m);
     const std::size_t count = spec.kind == FeatureKind::depth      ? kElasticTerms
                               : spec.kind == FeatureKind::velocity ? 2 * kViscosityCoefficients
                                                                    : kCurveTerms * spec.part_count;
@@ -195,12 +181,8 @@ Result<TrendColumns> TrendColumns::make(const Samples& samples, FeatureList list
     std::iota(of_feature.begin(), of_feature.end(), columns);
     columns += static_cast<Eigen::Index>(count);
   }
-  const bool lags = !list.surface.empty();
-  const auto of_branches =
-      features_at(lags ? at_the_surface(samples, list.surface) : samples, branches, made.rows_, control);
-  if (!of_branches) return of_branches.error();
-  const auto of_bristles = features_at(samples, bristles, made.rows_, control);
-  if (!of_bristles) return of_bristles.error();
+  const auto of_memory = features_at(samples, memory, made.rows_, control);
+  if (!of_memory) return of_memory.error();
   const std::vector<ElasticSpline> elastic = spline_basis();
   const bool viscous = has_kind(list.features, FeatureKind::velocity);
   made.list_ = std::move(list);
@@ -216,38 +198,9 @@ Result<TrendColumns> TrendColumns::make(const Samples& samples, FeatureList list
       for (const double v : {velocity_m_per_s, trend_equation::thinned(velocity_m_per_s, samples.rms_velocity_m_per_s)})
         for (const auto& power : kViscousBasis) *to++ = v * trend_equation::quadratic(power.data(), u);
     }
-    to = std::copy(of_branches->col(row).begin(), of_branches->col(row).end(), to);
-    std::copy(of_bristles->col(row).begin(), of_bristles->col(row).end(), to);
+    std::copy(of_memory->col(row).begin(), of_memory->col(row).end(), to);
   }
   return made;
-}
-
-FeatureSpec surface_lag_of(const ElasticSpline& elastic, double reference_depth_m) {
-  constexpr std::size_t kCoarsePieces = kDriveKnots + 1;
-  constexpr double kWidth = 1.0 / kCoarsePieces;
-  // The Greville abscissae in units of a piece.
-  std::array<double, kCoarsePieces + 3> average{};
-  for (std::size_t i = 1; i <= kCoarsePieces + 1; ++i) average[i] = static_cast<double>(i) - 1.0;
-  average[1] = 1.0 / 3.0;
-  average[kCoarsePieces + 1] = kCoarsePieces - 1.0 / 3.0;
-  average[kCoarsePieces + 2] = kCoarsePieces;
-  // The slope is a quadratic B-spline: its weights, and the second derivative of the curve at each knot.
-  std::array<double, kCoarsePieces + 2> weight{};
-  for (std::size_t i = 0; i < weight.size(); ++i) {
-    weight[i] = (elastic.at(average[i + 1] * kWidth) - elastic.at(average[i] * kWidth)) /
-                ((average[i + 1] - average[i]) * kWidth);
-  }
-  std::array<double, kCoarsePieces + 1> bend{};
-  for (std::size_t k = 0; k <= kCoarsePieces; ++k)
-    bend[k] = (k == 0 || k == kCoarsePieces ? 2.0 : 1.0) * (weight[k + 1] - weight[k]) / kWidth;
-  const auto cube = [&](std::size_t piece) { return (bend[piece + 1] - bend[piece]) / (6.0 * kWidth); };
-  FeatureSpec lag{FeatureKind::surface_lag};
-  DriveCurve& curve = lag.drive;
-  curve.reference_depth_m = reference_depth_m;
-  curve.has_knots = true;
-  curve.coefficient_N = {weight[0], 0.5 * bend[0], cube(0), 0.0};
-  for (std::size_t k = 0; k < kDriveKnots; ++k) curve.knot_N[k] = cube(k + 1) - cube(k);
-  return lag;
 }
 
 FittedTrend fitted_trend(const TrendColumns& columns, const Eigen::VectorXd& x, bool all) {
@@ -260,8 +213,6 @@ FittedTrend fitted_trend(const TrendColumns& columns, const Eigen::VectorXd& x, 
       fitted.features.push_back(candidate);
     else if (all || weights.maxCoeff() > 0.0)
       fitted.features.push_back(with_drives(candidate, weights.data(), depth_m, all));
-    if (candidate.kind == FeatureKind::depth && !columns.list().surface.empty())
-      fitted.features.push_back(surface_lag_of(fitted.trend.elastic, depth_m));
   }
   return fitted;
 }

@@ -6,8 +6,7 @@
 //   maxwell_spectrum  for each relaxation time a branch driven by int_0^u B_k,2, k = 0..2
 //   stops             for each threshold r, s / r times 1 - (1 - u)^4, u and u^2
 //   creep             for each time, q / r times the same; r is the greatest depth
-// With a `surface`, branches follow the material's surface instead of the tool (engine/tick/features.h): its depth
-// takes the place of that of the tool. Thread guarantee: slow side.
+// Thread guarantee: slow side.
 #pragma once
 
 #include <Eigen/Core>
@@ -35,8 +34,6 @@ std::vector<double> relaxation_times_s(const std::vector<FeatureSpec>& features)
 struct FeatureList {
   // Sorted by kind: depth, velocity, maxwell_spectrum (any number), stops, creep.
   std::vector<FeatureSpec> features{FeatureSpec{}};
-  // A surface_lag feature and the branches that determine the surface; empty: the surface does not lag.
-  std::vector<FeatureSpec> surface{};
 
   // Adds a feature in the order of kinds. `constants`: as constants_of; none for velocity. Without parts adds nothing.
   void add(FeatureKind kind, const std::vector<double>& constants = {});
@@ -99,10 +96,6 @@ class TrendColumns {
   std::vector<ColumnList> feature_columns_;
   Matrix terms_;
 };
-
-// The surface_lag feature of an elastic response: a cubic spline with the knots of a DriveCurve, through the response
-// at the knot averages (Schoenberg's variation diminishing approximation; de Boor, "A practical guide to splines", 11).
-FeatureSpec surface_lag_of(const ElasticSpline& elastic, double reference_depth_m);
 
 struct FittedTrend {
   Trend trend;

@@ -27,8 +27,8 @@ Eigen::MatrixXd values_of(const TrendColumns& columns, const Eigen::MatrixXd& so
   return values;
 }
 
-// At the greatest depth a relaxation time is exp(slowing) times that at the surface: 0.2 to 20.
-constexpr std::array kSlowings{0.75, -0.75, 1.5, -1.5, 2.25, 3.0};
+// At the greatest depth a relaxation time is exp(slowing) times that at the surface: 0.2 to 20. Simplest first.
+constexpr std::array kSlowings{0.0, 0.75, -0.75, 1.5, -1.5, 2.25, 3.0};
 
 // At most `most` of the values, evenly spaced by index.
 std::vector<double> evenly(const std::vector<double>& values, std::size_t most) {
@@ -53,39 +53,6 @@ FeatureList with_slowing(FeatureList list, double slowing) {
   for (FeatureSpec& spec : list.features)
     if (is_branch(spec.kind)) spec.slowing = slowing;
   return list;
-}
-
-// A shortened list of terms with its slowing and surface, and its cross-validated errors.
-struct Law {
-  FeatureList list;
-  FoldErrors errors;
-};
-
-double error_of(const Law& law) { return law.errors.rms_at_mean_score(); }
-
-// The surface_lag and the branches of the trend that is fitted to the rows. Friction and creep do not make the surface
-// lag.
-std::vector<FeatureSpec> surface_of(const TrendColumns& columns, const JndLine& jnd) {
-  const TrendEstimator estimator(columns, jnd, TrendEstimator::Smoothness::fixed);
-  const auto without = columns.columns_of([&](std::size_t f) { return !is_bristle(columns.list().features[f].kind); });
-  const FittedTrend fitted = fitted_trend(columns, estimator.fit(without), true);
-  std::vector<FeatureSpec> surface{surface_lag_of(fitted.trend.elastic, columns.samples().depth_m)};
-  std::ranges::copy_if(fitted.features, std::back_inserter(surface), &is_branch, &FeatureSpec::kind);
-  return surface;
-}
-
-// Scores a law. With `lags` its surface is searched first, beginning with that of `list`, which may have none: it
-// depends on the branches and they on the surface, so two passes of a fixed-point iteration. `samples`: thinned.
-Result<Law> scored(const Samples& samples, const JndLine& jnd, FeatureList list, bool lags, const FitControl& control) {
-  for (int pass = 0;; ++pass) {
-    const auto columns = TrendColumns::make(samples, list, kSearchRows, control);
-    if (!columns) return columns.error();
-    if (!lags || pass == 2) {
-      const TrendEstimator estimator(*columns, jnd, TrendEstimator::Smoothness::fixed);
-      return Law{std::move(list), estimator.cross_validate(estimator.all_columns()).errors};
-    }
-    list.surface = surface_of(*columns, jnd);
-  }
 }
 
 }  // namespace
@@ -201,34 +168,25 @@ CrossValidated TrendEstimator::cross_validate(const ColumnList& columns, double 
   return result;
 }
 
-Result<FeatureList> select_memory_law(const Samples& samples, const JndLine& jnd, const FeatureList& list,
-                                      std::vector<PartGain>& gains, const FitControl& control) {
+Result<FeatureList> select_slowing(const Samples& samples, const JndLine& jnd, const FeatureList& list,
+                                   std::vector<PartGain>& gains, const FitControl& control) {
   if (!has_kind(list.features, FeatureKind::maxwell_spectrum)) return list;
   // The filters are exact for steps of any length, and a hand moves little in 4 ms.
   const Samples few = thinned(samples, 3.9e-3);
-  std::vector<Law> surfaces;
-  for (const bool lags : {false, true}) {
-    auto law = scored(few, jnd, shortened(list), lags, control);
-    if (!law) return law.error();
-    surfaces.push_back(std::move(*law));
-  }
-  const std::size_t found = simplest_adequate(errors_of(surfaces));
-  const bool lags = found == 1;
-  gains.push_back({"surface lag", lags, error_of(surfaces[1]), error_of(surfaces[0])});
-
-  std::vector<Law> laws{surfaces[found]};
+  std::vector<FoldErrors> errors;
   for (const double slowing : kSlowings) {
-    auto law = scored(few, jnd, with_slowing(surfaces[found].list, slowing), lags, control);
-    if (!law) return law.error();
-    laws.push_back(std::move(*law));
+    const auto columns = TrendColumns::make(few, with_slowing(shortened(list), slowing), kSearchRows, control);
+    if (!columns) return columns.error();
+    const TrendEstimator estimator(*columns, jnd, TrendEstimator::Smoothness::fixed);
+    errors.push_back(estimator.cross_validate(estimator.all_columns()).errors);
   }
-  const std::size_t chosen = simplest_adequate(errors_of(laws));
-  const Law& slower =
-      chosen != 0 ? laws[chosen] : *std::ranges::min_element(laws.begin() + 1, laws.end(), {}, error_of);
-  gains.push_back({"depth-dependent relaxation", chosen != 0, error_of(slower), error_of(laws[0])});
-  FeatureList result = with_slowing(list, chosen != 0 ? kSlowings[chosen - 1] : 0.0);
-  result.surface = std::move(laws[chosen].list.surface);
-  return result;
+  const std::size_t chosen = simplest_adequate(errors);
+  const FoldErrors& slower =
+      chosen != 0 ? errors[chosen]
+                  : *std::ranges::min_element(errors.begin() + 1, errors.end(), {}, &FoldErrors::rms_at_mean_score);
+  gains.push_back(
+      {"depth-dependent relaxation", chosen != 0, slower.rms_at_mean_score(), errors[0].rms_at_mean_score()});
+  return with_slowing(list, kSlowings[chosen]);
 }
 
 Result<std::vector<double>> identify_relaxation(const Samples& samples, const JndLine& jnd, bool velocity,

@@ -69,9 +69,8 @@ class TrendEstimator {
 };
 
 // Below: the selection, by cross-validation and the selection rule, of the parameters of the memory that a linear
-// regression cannot identify: whether the material's surface lags behind a retreating tool (`surface_lag`,
-// engine/tick/features.h), how the relaxation times change with depth (`slowing`), and, for models with few features,
-// one to three relaxation times.
+// regression cannot identify: how the relaxation times change with depth (`slowing`, engine/tick/features.h), and, for
+// models with few features, one to three relaxation times.
 
 // The gain of a term of the trend: the cross-validated error in JND (FoldErrors::rms_at_mean_score) with it and without
 // it.
@@ -81,9 +80,9 @@ struct PartGain {
   double error_with = 0.0, error_without = 0.0;
 };
 
-// Returns `list` with the selected surface and slowing, and appends their gains to `gains`. Errors: interrupted.
-Result<FeatureList> select_memory_law(const Samples& samples, const JndLine& jnd, const FeatureList& list,
-                                      std::vector<PartGain>& gains, const FitControl& control);
+// Returns `list` with the selected slowing of its branches, and appends its gain to `gains`. Errors: interrupted.
+Result<FeatureList> select_slowing(const Samples& samples, const JndLine& jnd, const FeatureList& list,
+                                   std::vector<PartGain>& gains, const FitControl& control);
 // Selects `count` relaxation times from those of the dictionary (ascending, in s). Each candidate is a feature of one
 // regression. Times are added one by one, by the lowest cross-validated error; after each addition, times move to
 // neighbouring candidates while the error falls. `velocity`: whether the trend has viscosity. Errors: no candidates

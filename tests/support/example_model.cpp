@@ -16,7 +16,6 @@ constexpr double kVelocity_m_per_s = 0.05;
 double typical_size(FeatureKind kind) {
   switch (kind) {
     case FeatureKind::depth:
-    case FeatureKind::surface_lag:
       return kDepth_m;
     case FeatureKind::velocity:
       return kVelocity_m_per_s;
@@ -98,15 +97,10 @@ std::vector<FeatureSpec> memory_features() {
   return {FeatureSpec{}, {FeatureKind::velocity, 0.0, {}}, spectrum, stops, creep};
 }
 
-std::vector<FeatureSpec> lagging_features() {
+std::vector<FeatureSpec> slowing_features() {
   FeatureSpec slowed = memory_features()[2];
   slowed.slowing = 1.5;
-  slowed.parts[1].drive.has_knots = true;
-  slowed.parts[1].drive.knot_N = {0.5, -0.3, 0.1, 0.0, 0.2, -0.1, 0.4};
-  FeatureSpec lag;
-  lag.kind = FeatureKind::surface_lag;
-  lag.drive = slowed.parts[1].drive;
-  return {FeatureSpec{}, lag, {FeatureKind::velocity, 0.0, {}}, slowed};
+  return {FeatureSpec{}, {FeatureKind::velocity, 0.0, {}}, slowed};
 }
 
 ElasticSpline even_spline(double at_surface_N, double at_depth_N) {
@@ -176,7 +170,7 @@ std::vector<ModelData> example_models() {
   models.back().correction_limit_N = models.back().largest_force_N;
   change_rbf(models.back(), [](RbfFunction& function) { function.tail(0) += 1.0; });
   models.push_back(example_model("greedy", KernelKind::cubic, memory_features(), 21));
-  models.push_back(example_model("greedy", KernelKind::cubic, lagging_features(), 22));
+  models.push_back(example_model("greedy", KernelKind::cubic, slowing_features(), 22));
   models.back().features[0].surface_position_m = 0.4e-3;
   return models;
 }

@@ -45,10 +45,4 @@ inline double closed_motion_m(double phase) {
   return 4e-3 - 1.5e-3 * std::cos(angle) + 0.8e-3 * std::sin(7.0 * angle) + 0.3e-3 * std::sin(31.0 * angle);
 }
 
-inline FeatureSpec surface_lag(const DriveCurve& elastic) {
-  FeatureSpec spec{FeatureKind::surface_lag};
-  spec.drive = elastic;
-  return spec;
-}
-
 }  // namespace palpate::test

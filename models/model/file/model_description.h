@@ -39,8 +39,6 @@ void describe_drive(auto& file, DriveCurve& curve) {
   file.object("drive", "an object with reference_depth_m and coefficient_N", [&] {
     file.value("reference_depth_m", curve.reference_depth_m, kDivisor);
     file.value("coefficient_N", curve.coefficient_N, kDriveForce_N);
-    curve.has_knots = file.has("knot_N", curve.has_knots);
-    if (curve.has_knots) file.value("knot_N", curve.knot_N, kDriveForce_N);
   });
 }
 
@@ -49,7 +47,6 @@ void describe_feature(auto& file, FeatureSpec& spec) {
   if (has_time(spec.kind)) file.value("relaxation_time_s", spec.relaxation_time_s, kDivisor);
   if (spec.kind == FeatureKind::depth) describe_unless_0(file, "surface_position_m", spec.surface_position_m);
   if (is_branch(spec.kind)) describe_unless_0(file, "slowing", spec.slowing, kSlowing);
-  if (has_drive(spec.kind)) describe_drive(file, spec.drive);
   if (!has_parts(spec.kind)) return;
   const auto describe_part = [&](std::size_t p) {
     FeaturePart& part = spec.parts[p];

@@ -1,5 +1,5 @@
-// The memory of features: a lagging surface, relaxation times that depend on depth, and the
-// memory kept in an exchange of models (engine/tick/features.h).
+// The memory of features: relaxation times that depend on depth, and the memory kept in an exchange of models
+// (engine/tick/features.h).
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -13,44 +13,6 @@ namespace palpate {
 namespace {
 
 using namespace test;
-
-// A spring of 300 N/m in parallel with a branch of 600 N/m and 0.2 s, relaxed at 4 mm. The
-// surface returns at once to s with 300 s + 600 (s - 4 mm) = 0, then creeps back by
-// ds/dt = -s / (3 x 0.2 s) until it meets the tool.
-TEST(FeatureMemory, TheSurfaceLeavesAToolThatRetreatsFastAndComesBack) {
-  const DriveCurve elastic{5e-3, {1.5}};
-  const DriveCurve branch{5e-3, {3.0}};
-  FeatureFilter filter({surface_lag(elastic), spectrum({0.2}, branch)});
-  int i = 0;
-  for (; i < 4000; ++i) feed(filter, 1e-3 * i, 4e-3);
-  EXPECT_EQ(filter.vector().values[0], 0.0) << "it lies against a tool that presses";
-  for (int k = 0; k <= 300; ++k, ++i) {
-    const auto& values = feed(filter, 1e-3 * i, 2e-3).values;
-    const double free_m = 4e-3 * (2.0 / 3.0) * std::exp(-1e-3 * k / 0.6);
-    // The surface is solved to 10 uN, and the first step relaxes for 1 ms.
-    ASSERT_NEAR(values[0], std::max(0.0, free_m - 2e-3), 5e-6) << k;
-    ASSERT_NEAR(filter.surface_m(), 2e-3 + values[0], 1e-15);
-  }
-}
-
-// As above, with a relaxation time that grows e-fold per 2 mm. Without contact it depends on
-// the depth of the returning surface, not on that of the tool.
-TEST(FeatureMemory, ASurfaceOnItsOwnRelaxesByItsOwnDepth) {
-  const DriveCurve elastic{5e-3, {1.5}};
-  FeatureSpec branch = spectrum({0.2}, DriveCurve{5e-3, {3.0}});
-  branch.slowing = 2.5;
-  FeatureFilter filter({surface_lag(elastic), branch});
-  int i = 0;
-  for (; i < 60000; ++i) feed(filter, 1e-3 * i, 4e-3);
-  double free_m = 4e-3 * (2.0 / 3.0);
-  for (int k = 0; k <= 2000; ++k, ++i) {
-    feed(filter, 1e-3 * i, 0.1e-3);
-    // Tolerance: a lag of one step, and 10 uN.
-    ASSERT_NEAR(filter.surface_m(), free_m, 1e-5) << k;
-    for (int part = 0; part < 10; ++part) free_m -= 1e-4 * free_m / (3.0 * 0.2 * std::exp(2.5 * free_m / 5e-3));
-  }
-  EXPECT_LT(free_m, 1.5e-3) << "it came back a good way";
-}
 
 // The same motion relative to a surface at half a millimetre gives the same features.
 TEST(FeatureMemory, ASurfaceDeeperThanZeroOnlyMovesTheZero) {
@@ -72,15 +34,15 @@ TEST(FeatureMemory, ASurfaceDeeperThanZeroOnlyMovesTheZero) {
   }
 }
 
-// A complete material with nonnegative force. Energy returned in a cycle may have been stored
-// in an earlier one, so the sum over all cycles from rest must be positive.
-TEST(FeatureMemory, ASurfaceThatLagsAndTimesThatSlowMakeNoEnergy) {
+// A complete material. Energy returned in a cycle may have been stored in an earlier one, so the sum over all cycles
+// from rest must be positive.
+TEST(FeatureMemory, TimesThatSlowMakeNoEnergy) {
   const DriveCurve elastic{5e-3, {0.5, 0.4}};
   for (const double slowing : {0.0, 3.0, -2.0}) {
     for (const double duration_s : {0.05, 0.5, 5.0}) {
       FeatureSpec branches = spectrum({0.01, 0.1, 1.0}, stiffening());
       branches.slowing = slowing;
-      FeatureFilter filter({surface_lag(elastic), branches});
+      FeatureFilter filter({branches});
       double before_N = 0.0;
       double work = 0.0;
       constexpr int kSteps = 20000;
@@ -88,8 +50,7 @@ TEST(FeatureMemory, ASurfaceThatLagsAndTimesThatSlowMakeNoEnergy) {
       for (int i = 1; i <= 4 * kSteps; ++i) {
         const double phase = static_cast<double>(i) / kSteps;
         const double position_m = closed_motion_m(phase);
-        const double force_N =
-            std::max(0.0, elastic.at(position_m) + feed(filter, duration_s * phase, position_m).values[1]);
+        const double force_N = elastic.at(position_m) + feed(filter, duration_s * phase, position_m).values[0];
         work += 0.5 * (force_N + before_N) * (position_m - closed_motion_m(phase - 1.0 / kSteps));
         before_N = force_N;
       }
@@ -131,12 +92,8 @@ TEST(FeatureMemory, KeepsNoDepthBeyondTheDomain) {
   constexpr double kDeepest_m = 4e-3;
   FeatureSpec slowed = spectrum({0.05, 0.8}, stiffening());
   slowed.slowing = 1.5;
-  const std::vector<FeatureSpec> specs = {FeatureSpec{},
-                                          lowpass(0.17),
-                                          slowed,
-                                          stops({0.1e-3, 1e-3}, stiffening()),
-                                          creep({2.0}, stiffening()),
-                                          surface_lag(stiffening())};
+  const std::vector<FeatureSpec> specs = {FeatureSpec{}, lowpass(0.17), slowed, stops({0.1e-3, 1e-3}, stiffening()),
+                                          creep({2.0}, stiffening())};
   for (const double beyond_m : {4.1e-3, 8e-3, 0.5, 1e3}) {
     FeatureFilter far(specs, kDeepest_m), edge(specs, kDeepest_m), free(specs);
     bool differs = false;

@@ -136,7 +136,7 @@ TEST(Features, TheSameMotionGivesTheSameFeaturesAtEveryRate) {
   expect_same_at_every_rate(specs);
   FeatureSpec slowing = spectrum({0.1}, stiffening());
   slowing.slowing = 2.0;
-  expect_same_at_every_rate({FeatureSpec{}, surface_lag({5e-3, {0.5, 0.5}}), slowing});
+  expect_same_at_every_rate({FeatureSpec{}, slowing});
 }
 
 TEST(Features, FreeAirRelaxesAndDoesNotLoad) {
@@ -192,7 +192,6 @@ TEST(Features, HaveNamesWithUnits) {
   EXPECT_EQ(feature_name(spectrum({0.02, 0.3}, stiffening())), "feature_maxwell_spectrum_0.02-0.3s_N");
   EXPECT_EQ(feature_name(stops({1e-4}, stiffening())), "feature_stops_0.1mm_N");
   EXPECT_EQ(feature_name(creep({0.1, 6.0}, stiffening())), "feature_creep_0.1-6s_N");
-  EXPECT_EQ(feature_name(surface_lag(stiffening())), "feature_surface_lag_m");
 }
 
 // After an hour at rest in contact, filters are exactly zero and never were denormal.

@@ -58,21 +58,21 @@ TEST(IdentifyRelaxation, RefusesRecordingsWithoutCandidatesAndCanBeInterrupted) 
             "the recordings are too short to identify a relaxation time; record for longer, or pass --features scene");
 }
 
-TEST(SelectMemoryLaw, OfAListWithoutBranchesChangesNothing) {
+TEST(SelectSlowing, OfAListWithoutBranchesChangesNothing) {
   FeatureList list;
   list.add(FeatureKind::velocity);
   std::vector<PartGain> gains;
-  EXPECT_EQ(test::must(select_memory_law(strokes_into({0.1}), {}, list, gains, {})), list);
+  EXPECT_EQ(test::must(select_slowing(strokes_into({0.1}), {}, list, gains, {})), list);
   EXPECT_TRUE(gains.empty());
 }
 
-TEST(SelectMemoryLaw, FindsHowTheRelaxationDependsOnDepth) {
+TEST(SelectSlowing, FindsHowTheRelaxationDependsOnDepth) {
   for (const double slowing : {1.5, -1.5}) {
     const Samples samples = strokes_into({0.1}, slowing);
     FeatureList list;
     list.add(FeatureKind::maxwell_spectrum, {0.02, 0.1, 0.5});
     std::vector<PartGain> gains;
-    const FeatureList law = test::must(select_memory_law(samples, {}, list, gains, {}));
+    const FeatureList law = test::must(select_slowing(samples, {}, list, gains, {}));
     EXPECT_TRUE(gains.back().taken);
     EXPECT_LT(gains.back().error_with, gains.back().error_without);
     // The simplest that is not significantly worse: at least half of it.
@@ -81,20 +81,18 @@ TEST(SelectMemoryLaw, FindsHowTheRelaxationDependsOnDepth) {
   }
 }
 
-// A branch that follows the tool with one relaxation time needs neither.
-TEST(SelectMemoryLaw, TakesNeitherSurfaceNorSlowingWhereThereIsNone) {
+TEST(SelectSlowing, TakesNoneWhereThereIsNone) {
   const Samples samples = strokes_into({0.1});
   FeatureList list;
   list.add(FeatureKind::maxwell_spectrum, {0.02, 0.1, 0.5});
   std::vector<PartGain> gains;
-  const FeatureList law = test::must(select_memory_law(samples, {}, list, gains, {}));
-  ASSERT_EQ(gains.size(), 2u);
-  EXPECT_EQ(gains[0].name, "surface lag");
-  EXPECT_EQ(gains[1].name, "depth-dependent relaxation");
-  EXPECT_FALSE(gains[1].taken);
+  const FeatureList law = test::must(select_slowing(samples, {}, list, gains, {}));
+  ASSERT_EQ(gains.size(), 1u);
+  EXPECT_EQ(gains[0].name, "depth-dependent relaxation");
+  EXPECT_FALSE(gains[0].taken);
   EXPECT_EQ(law.features, list.features);
   const FitControl stop{[](double) { return false; }};
-  EXPECT_EQ(test::message_of(select_memory_law(samples, {}, list, gains, stop)), "interrupted");
+  EXPECT_EQ(test::message_of(select_slowing(samples, {}, list, gains, stop)), "interrupted");
 }
 
 }  // namespace

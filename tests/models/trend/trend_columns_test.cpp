@@ -123,46 +123,6 @@ TEST(TrendColumns, RelaxationThatDependsOnDepthIsThatOfTheFeatures) {
   EXPECT_GT(largest, 0.1) << "the slowing matters";
 }
 
-// The largest difference between the trend of a list with a surface and that of the model whose features it becomes:
-// its branches follow the surface, its bristles and its viscosity the tool.
-double difference_to_the_model_N(double slowing) {
-  const Samples samples = strokes();
-  FeatureList list;
-  list.add(FeatureKind::velocity);
-  list.add(FeatureKind::maxwell_spectrum, {0.05, 0.3});
-  list.features.back().slowing = slowing;
-  list.add(FeatureKind::stops, {2e-4});
-  const TrendColumns without = columns_of(samples, list);
-  Eigen::VectorXd x = Eigen::VectorXd::Constant(without.columns(), 0.7);
-  x.head(kElasticTerms).setConstant(1.5);
-  const FittedTrend fitted = fitted_trend(without, x, true);
-  list.surface = {surface_lag_of(fitted.trend.elastic, kDepth_m), fitted.features[2]};
-  const TrendColumns columns = columns_of(samples, list);
-  const FittedTrend model = fitted_trend(columns, x, true);
-  EXPECT_EQ(model.features.size(), 5u);
-  EXPECT_EQ(model.features[1], list.surface[0]) << "of the elastic response of the same weights";
-  FeatureFilter filter(model.features);
-  const Eigen::VectorXd force_N = columns.terms() * x;
-  EXPECT_GT((force_N - without.terms() * x).cwiseAbs().maxCoeff(), 0.1) << "the surface matters";
-  Eigen::Index row = 0;
-  double largest_N = 0.0;
-  for (const Sample& sample : samples.rows) {
-    const FeatureVector& vector = filter.update(sample.tool, sample.motion);
-    if (!vector.in_contact) continue;
-    const double model_N = model.trend.at(vector.values.data(), model.features);
-    largest_N = std::max(largest_N, std::abs(force_N(row++) - model_N));
-  }
-  EXPECT_EQ(row, force_N.size());
-  return largest_N;
-}
-
-TEST(TrendColumns, OfALaggingSurfaceAreThoseOfTheModel) {
-  EXPECT_LT(difference_to_the_model_N(0.0), 1e-11);  // rounding of sums of forces of some newtons
-  // While the surface is above the tool, the model has the relaxation times of the beginning of a step and the columns
-  // those of its middle: of steps of 1 ms, some thousandths of the surface's motion.
-  EXPECT_LT(difference_to_the_model_N(1.5), 5e-3);
-}
-
 // A weighted sum of branch features is one branch with the combined drive: the filter is linear in it.
 TEST(TrendColumns, CombinedDriveIsTheWeightedSumOfTheBasis) {
   const double weights[] = {0.5, 2.0, 0.25};
@@ -172,25 +132,6 @@ TEST(TrendColumns, CombinedDriveIsTheWeightedSumOfTheBasis) {
     const FeatureVector& parts = basis.update(sample.tool, sample.motion);
     const double sum = 0.5 * parts.values[0] + 2.0 * parts.values[1] + 0.25 * parts.values[2];
     ASSERT_NEAR(one.update(sample.tool, sample.motion).values[0], sum, 1e-12);  // rounding of 3,000 steps
-  }
-}
-
-// The coarse curve locates the surface. It must reproduce a line and stay monotonic.
-TEST(TrendColumns, TheCoarseCurveIsTheSplineAndRises) {
-  const std::vector<ElasticSpline> basis = spline_basis();
-  const std::vector<double> ones(kElasticTerms, 1.0);
-  const DriveCurve straight = surface_lag_of(combined_spline(basis, ones.data()), kDepth_m).drive;
-  std::vector<double> stiffening(kElasticTerms);
-  for (std::size_t i = 0; i < kElasticTerms; ++i) stiffening[i] = 1.0 + static_cast<double>(i);
-  const ElasticSpline elastic = combined_spline(basis, stiffening.data());
-  const DriveCurve coarse = surface_lag_of(elastic, kDepth_m).drive;
-  const DriveCurve bend = surface_lag_of(basis[16], kDepth_m).drive;
-  for (int i = 1; i <= 240; ++i) {
-    const double u = i / 200.0;
-    EXPECT_NEAR(straight.at(u * kDepth_m), u, 1e-12);
-    // The error of Schoenberg's approximation is E'' h^2 / 6, with h = 1/8 and E'' at most 34 here.
-    EXPECT_NEAR(coarse.at(std::min(u, 1.0) * kDepth_m), elastic.at(std::min(u, 1.0)), 34.0 / 64.0 / 6.0);
-    EXPECT_GE(bend.at(u * kDepth_m), bend.at((u - 0.005) * kDepth_m) - 1e-13);
   }
 }
 

@@ -45,15 +45,11 @@ TEST(ModelIo, FeaturesWithPartsSplinesSofteningAndTheErrorBoundAreKept) {
   stops.part_count = 1;
   stops.parts[0] = {0.0, 1e-4, drive};
   spectrum.slowing = 1.7;
-  spectrum.parts[1].drive.has_knots = true;
-  spectrum.parts[1].drive.knot_N = {0.1, -0.2, 1.0 / 7.0, 0.0, 0.5, 0.25, 1.0};
   FeatureSpec creep;
   creep.kind = FeatureKind::creep;
   creep.part_count = 1;
   creep.parts[0] = {0.1, 5e-3, drive};
-  FeatureSpec lag{FeatureKind::surface_lag};
-  lag.drive = spectrum.parts[1].drive;
-  ModelData data = example_model("greedy", KernelKind::cubic, {FeatureSpec{}, spectrum, stops, creep, lag}, 11);
+  ModelData data = example_model("greedy", KernelKind::cubic, {FeatureSpec{}, spectrum, stops, creep}, 11);
   data.trend.elastic = test::even_spline(0.1, 1.0 / 3.0);
   data.error_bound = ErrorBound{0.01, 0.02, 0.3};
   data.sensor = SensorSpec{30e-6, 1e-6};
@@ -66,7 +62,7 @@ TEST(ModelIo, FeaturesWithPartsSplinesSofteningAndTheErrorBoundAreKept) {
   const FittedModel loaded(back);
   test::Numbers numbers(4);
   for (int query = 0; query < 500; ++query) {
-    const double x[] = {5e-3 * std::abs(numbers.next()), numbers.next(), numbers.next(), 5e-3, 0.0};
+    const double x[] = {5e-3 * std::abs(numbers.next()), numbers.next(), numbers.next(), 5e-3};
     const ForceEstimate one = original.evaluate(x);
     const ForceEstimate other = loaded.evaluate(x);
     ASSERT_EQ(bits(one.force_N), bits(other.force_N));
