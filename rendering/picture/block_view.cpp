@@ -23,7 +23,7 @@ constexpr float kLongestArrow = 1.3F;
 constexpr float kOutline = 0.0019F, kLeastOutline_px = 0.75F;  // width of outlines, in heights of the picture
 // The depth of a dent decreases to 0 up to this share of the distance to the nearest side (dent.glsl).
 constexpr float kMoves = 0.9F;
-// Rise of a dome, in radii of the tool: that of the virtual button (scenes/material/button_block.h).
+// Rise of a dome, in radii of the tool: that of the virtual button (scenes/material/material_laws.h).
 constexpr float kDomeRise = 0.5F;
 // The tool, in units of the ball's radius, with the tip at y = 0: a polished ball on a stem, the disc of a force
 // sensor, and a dull handle. The two points of a corner of a profile differ slightly, because equal points have no

@@ -10,7 +10,7 @@
 #include "engine/recording/recording.h"
 #include "scenes/hard/closed_loop.h"
 #include "scenes/hard/hard_case.h"
-#include "scenes/material/block.h"
+#include "scenes/material/material.h"
 
 namespace palpate {
 

@@ -3,7 +3,7 @@
 
 #include "engine/base/random_stream.h"
 #include "scenes/hard/hard_trials.h"
-#include "scenes/material/maxwell_block.h"
+#include "scenes/material/material_laws.h"
 
 namespace palpate {
 namespace {

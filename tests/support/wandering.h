@@ -5,7 +5,7 @@
 #include <cstdint>
 
 #include "engine/base/random_stream.h"
-#include "scenes/material/block.h"
+#include "scenes/material/material.h"
 
 namespace palpate::test {
 
