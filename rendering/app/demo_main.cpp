@@ -18,7 +18,7 @@
 #include "rendering/app/demo_app.h"
 #include "rendering/app/study_app.h"
 #include "scenes/scene/folders.h"
-#include "scenes/study/prepare_strokes.h"
+#include "scenes/study/study_file.h"
 #include "scenes/worker/model_request.h"
 #include "scenes/worker/model_worker.h"
 

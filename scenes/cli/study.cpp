@@ -10,8 +10,7 @@
 #include "models/fit/model_plan.h"
 #include "scenes/cli/progress.h"
 #include "scenes/cli/verbs.h"
-#include "scenes/study/prepare_strokes.h"
-#include "scenes/study/simulated_subject.h"
+#include "scenes/study/study_file.h"
 #include "scenes/study/study_analysis.h"
 
 namespace palpate::cli {

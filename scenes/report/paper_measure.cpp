@@ -11,7 +11,7 @@
 #include "scenes/report/paper.h"
 #include "scenes/report/recordings.h"
 #include "scenes/scene/scene.h"
-#include "scenes/study/simulated_subject.h"
+#include "scenes/study/study_analysis.h"
 
 namespace palpate {
 namespace {

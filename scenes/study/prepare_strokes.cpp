@@ -1,4 +1,4 @@
-#include "scenes/study/prepare_strokes.h"
+#include "scenes/study/study_file.h"
 
 #include <algorithm>
 #include <cmath>

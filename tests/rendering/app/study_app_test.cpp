@@ -9,9 +9,8 @@
 #include <chrono>
 #include <filesystem>
 
-#include "scenes/study/prepare_strokes.h"
-#include "scenes/study/simulated_subject.h"
 #include "scenes/study/study_file.h"
+#include "scenes/study/study_analysis.h"
 #include "tests/support/message_parts.h"
 #include "tests/support/study_driving.h"
 #include "tests/support/temporary_folder.h"
