@@ -2,13 +2,23 @@
 
 #include <algorithm>
 #include <atomic>
+#include <limits>
 #include <system_error>
 #include <thread>
 #include <vector>
 
 namespace palpate {
+namespace {
 
-int thread_count() { return std::max(1, static_cast<int>(std::thread::hardware_concurrency())); }
+std::atomic<int> most_threads{std::numeric_limits<int>::max()};
+
+}  // namespace
+
+int thread_count() {
+  return std::max(1, std::min(most_threads.load(), static_cast<int>(std::thread::hardware_concurrency())));
+}
+
+void limit_threads(int most) { most_threads = most; }
 
 void parallel_for(int count, const std::function<void(int part)>& work) {
   std::atomic<int> next{0};

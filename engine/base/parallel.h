@@ -7,8 +7,10 @@
 
 namespace palpate {
 
-// The number of threads of a fit: one for each processor of the machine.
+// The number of threads of a fit: one for each processor of the machine, or a smaller limit. The limit is for programs
+// that run several fits as processes; set it before the first fit.
 int thread_count();
+void limit_threads(int most);
 
 // Calls work(0) ... work(count - 1) once each on up to thread_count() threads, and returns when all calls have ended.
 // The assignment of parts to threads is not deterministic, so parts must write to separate memory; results that are

@@ -3,6 +3,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <iostream>
 #include <memory>
 #include <optional>
@@ -175,24 +176,64 @@ Status run_fit(const FitArguments& arguments) {
   return {};
 }
 
+// A model for each recording of a folder.
+Status fit_each(const FitArguments& arguments) {
+  const std::string& folder = arguments.recordings.front();
+  std::string command = "palpate fit --recording " + shell_word(folder);
+  for (const OptionText& option : arguments.options) command += " --" + option.name + " " + shell_word(option.value);
+  command += " --scene " + shell_word(arguments.scene) + " --out " + shell_word(arguments.out);
+  const auto job = [&](const std::string& recording, const std::string& result) {
+    FitArguments one = arguments;
+    one.recordings = {recording};
+    one.out = result;
+    one.force = true;
+    return run_fit(one);
+  };
+  const auto row = [](const std::string& result) -> FolderRun::Row {
+    const auto model = load_model(result);
+    if (!model) return {};
+    const Provenance& provenance = (*model)->data().provenance;
+    return {{"model", (*model)->name()},
+            {"samples", provenance.samples},
+            {"contact_samples", provenance.contact_samples},
+            {"training_within_jnd", provenance.training_within_jnd}};
+  };
+  return run_folder({"fitting " + plan_name(arguments.plan), command, folder, arguments.out, ".json", "models",
+                     arguments.force, job, row});
+}
+
+// With one folder and `--out FOLDER` each recording gets its own model; else all recordings are one training set.
+Status run_fit_or_each(FitArguments arguments) {
+  const bool to_file = std::filesystem::path(arguments.out).extension() == ".json";
+  if (arguments.recordings.size() == 1 && is_folder(arguments.recordings.front()) && !to_file)
+    return fit_each(arguments);
+  auto recordings = recordings_in(arguments.recordings);
+  if (!recordings) return recordings.error();
+  arguments.recordings = std::move(*recordings);
+  return run_fit(arguments);
+}
+
 }  // namespace
 
 void add_fit(CLI::App& app, Verbs& verbs) {
   auto arguments = std::make_shared<FitArguments>();
   CLI::App* verb = app.add_subcommand("fit", "Fit a force model to recordings");
   verb->add_option("--recording", arguments->recordings,
-                   "Training recordings (CSV); together they form one training set")
+                   "Training recordings (CSV) or folders of them; together they form one training set. With one folder "
+                   "and --out FOLDER each recording gets its own model, in parallel; the same command continues a run")
       ->required()
-      ->type_name("CSV");
+      ->type_name("CSV|FOLDER");
   for (const PlanOption& option : plan_options()) add_plan_option(*verb, option, arguments);
   verb->add_flag_callback("--list-methods", list_methods, "Print the names of all methods, one per line");
   verb->option_defaults()->always_capture_default();
   verb->add_option("--scene", arguments->scene, "Scene that gives the features and the JND line");
-  verb->add_option("--out", arguments->out, "Model file to write (JSON)")->required()->type_name("JSON");
+  verb->add_option("--out", arguments->out, "Model file (JSON) or folder to write")
+      ->required()
+      ->type_name("JSON|FOLDER");
   verb->add_flag("--force", arguments->force, "Replace an existing file");
   verb->add_flag("--json", arguments->json, "Print one JSON object");
   verb->parse_complete_callback([arguments] { read_plan(*arguments); });
-  verbs.emplace_back(verb, [arguments] { return run_fit(*arguments); });
+  verbs.emplace_back(verb, [arguments] { return run_fit_or_each(*arguments); });
 }
 
 }  // namespace palpate::cli

@@ -30,20 +30,20 @@ struct Verb {
   void (*add)(CLI::App&, Verbs&);
   const char* example;  // for its --help and the manual page
 };
-// In the order of --help.
+// In the order of the work, which is that of --help.
 constexpr Verb kVerbs[] = {
-    {add_synth, "palpate synth --material silicone --seed 1 --seconds 60 --out rec.csv"},
     {add_import, "palpate import rig.csv --units mm,N --zero contact --out rec.csv"},
     {add_check, "palpate check rec.csv"},
     {add_fit, "palpate fit --recording rec.csv --out model.json"},
     {add_replay, "palpate replay --recording test.csv --model model.json --plot errors.svg"},
-    {add_export, "palpate export model.json --c model.c"},
     {add_report, "palpate report --train rec.csv --test test.csv --out report"},
-    {add_paper, "palpate paper --quick --out paper"},
-    {add_hard, "palpate hard --out hard"},
+    {add_export, "palpate export model.json --c model.c"},
     {add_record, "palpate record --device bridge:/dev/ttyACM0 --guide --out rec.csv"},
+    {add_synth, "palpate synth --material silicone --seed 1 --seconds 60 --out rec.csv"},
     {add_scenes, "palpate scenes"},
     {add_devices, "palpate devices"},
+    {add_hard, "palpate hard --out hard"},
+    {add_paper, "palpate paper --quick --out paper"},
     {add_study, "palpate study simulate --discriminate --out simulated"},
 };
 
@@ -80,15 +80,15 @@ Status run_chosen(const Verbs& verbs) {
 
 // The first word that is not known, for which CLI11 would name a missing option or say "not expected":
 // "unknown option --metod; did you mean --method?", "unknown verb "fti"; did you mean fit?"; empty if all are known.
-std::string unknown_word(const CLI::App& app, int argc, char** argv) {
+std::string unknown_word(const CLI::App& app, const std::vector<std::string>& words) {
   const auto unknown = [](const std::string& what, const std::string& word, const std::string& dashes,
                           const std::vector<std::string>& known) {
     const std::string nearest = nearest_name(word, known);
     return "unknown " + what + (nearest.empty() ? "" : "; did you mean " + dashes + nearest + "?");
   };
   const CLI::App* verb = &app;
-  for (int i = 1; i < argc && std::string_view(argv[i]) != "--"; ++i) {
-    const std::string word = argv[i];
+  for (const std::string& word : words) {
+    if (word == "--") break;
     std::vector<std::string> known;
     if (word.rfind("--", 0) == 0) {
       const std::string name = word.substr(2, word.find('=') - 2);
@@ -114,7 +114,26 @@ std::string version_text() {
          ")";
 }
 
-int run_program(int argc, char** argv) {
+// The examples of the first verbs, up to the report.
+std::string joined_examples() {
+  std::string text;
+  for (const Verb& one : kVerbs) {
+    text += (text.empty() ? "" : "\n  ") + std::string(one.example);
+    if (one.add == add_report) break;
+  }
+  return text;
+}
+
+// `palpate help fit` is `palpate fit --help`.
+std::vector<std::string> words_of(int argc, char** argv) {
+  std::vector<std::string> words(argv + 1, argv + argc);
+  if (words.empty() || words.front() != "help") return words;
+  words.erase(words.begin());
+  words.push_back("--help");
+  return words;
+}
+
+int run_program(const std::vector<std::string>& words) {
   CLI::App app("Palpate: data-driven haptic rendering, without a window", "palpate");
   app.set_version_flag("--version", version_text);
   Verbs verbs;
@@ -122,10 +141,11 @@ int run_program(int argc, char** argv) {
     one.add(app, verbs);
     verbs.back().first->footer(std::string("Example:\n  ") + one.example);
   }
+  app.footer("Example, from a table to a model and its errors on another recording:\n  " + joined_examples());
   try {
-    if (argc < 2) return fail_usage(app, verbs, "no verb given");
+    if (words.empty()) return fail_usage(app, verbs, "no verb given");
     app.require_subcommand(1);
-    app.parse(argc, argv);
+    app.parse({words.rbegin(), words.rend()});
     const Status status = run_chosen(verbs);
     if (status) return kDone;
     // The exit code of a program that a signal has ended, as in a shell.
@@ -135,7 +155,7 @@ int run_program(int argc, char** argv) {
       app.exit(error);  // --help, --version and the lists that end a verb
       return std::cout.flush() ? kDone : fail("cannot write to standard output", kFailed);
     }
-    const std::string unknown = unknown_word(app, argc, argv);
+    const std::string unknown = unknown_word(app, words);
     return fail_usage(app, verbs, unknown.empty() ? error.what() : unknown);
   }
 }
@@ -160,7 +180,7 @@ int main(int argc, char** argv) {
     palpate::install_signal_handlers();
     palpate::prepare_blas();
     palpate::cli::keep_freed_memory();
-    return palpate::cli::run_program(argc, argv);
+    return palpate::cli::run_program(palpate::cli::words_of(argc, argv));
   } catch (const std::bad_alloc&) {
     return palpate::cli::fail("out of memory", palpate::cli::kFailed);
   } catch (const std::exception& error) {

@@ -9,7 +9,14 @@
 
 namespace palpate::cli {
 
+namespace {
+
 constexpr auto kDrawInterval = std::chrono::milliseconds(100);
+bool hidden = false;
+
+}  // namespace
+
+void hide_progress() { hidden = true; }
 
 std::string progress_text(const std::string& label, double fraction, double elapsed_s) {
   fraction = fraction > 0.0 ? std::min(fraction, 1.0) : 0.0;  // a NaN is 0
@@ -22,7 +29,10 @@ std::string progress_text(const std::string& label, double fraction, double elap
 }
 
 ProgressLine::ProgressLine(std::string label)
-    : label_(std::move(label)), start_(Clock::now()), last_drawn_(start_), terminal_(isatty(STDERR_FILENO) == 1) {}
+    : label_(std::move(label)),
+      start_(Clock::now()),
+      last_drawn_(start_),
+      terminal_(!hidden && isatty(STDERR_FILENO) == 1) {}
 
 ProgressLine::~ProgressLine() {
   if (drawn_) std::fputs("\r\033[K", stderr);

@@ -35,6 +35,9 @@ class ProgressLine {
   double most_ = 0.0;  // of the fractions
 };
 
+// For processes of which another one shows the progress: no line is drawn any more.
+void hide_progress();
+
 // Calls `make` with the progress on stderr.
 auto with_progress(std::string label, const auto& make) {
   ProgressLine line(std::move(label));

@@ -10,8 +10,8 @@
 #include "models/fit/model_plan.h"
 #include "scenes/cli/progress.h"
 #include "scenes/cli/verbs.h"
-#include "scenes/study/study_file.h"
 #include "scenes/study/study_analysis.h"
+#include "scenes/study/study_file.h"
 
 namespace palpate::cli {
 namespace {

@@ -67,6 +67,28 @@ struct LoadedModel {
 Result<std::vector<LoadedModel>> load_models(const std::vector<std::string>& paths,
                                              const std::vector<std::string>& names);
 
+bool is_folder(const std::string& path);
+// `paths` with the recordings (.csv) of each folder in its place, in the order of their names. Errors: a folder that
+// cannot be read or has none.
+Result<std::vector<std::string>> recordings_in(const std::vector<std::string>& paths);
+
+// One job for each recording (.csv) of a folder, as many at a time as the machine has cores, each in a process with one
+// thread, so that the memory does not grow with the number of recordings. A result is complete when its file exists and
+// is newer than the recording. The same command continues after an interruption; it does only what is missing. Writes
+// one table with a row for each recording: what `row` reads from its result, else the reason why there is none.
+struct FolderRun {
+  using Row = std::vector<std::pair<std::string, nlohmann::ordered_json>>;  // column and value
+  std::string label;                                                        // for the progress
+  std::string command;                                                      // without --force; kept in the folder
+  std::string folder, out;                                                  // of the recordings, of the results
+  std::string result, table;  // the result of NAME.csv is out/NAME + result, the table out/table.csv
+  bool force = false;         // replaces all results
+  std::function<Status(const std::string& recording, const std::string& result)> job;
+  std::function<Row(const std::string& result)> row;
+};
+// Errors: no recordings; `out` was made by another command; the recordings that are not done, with their reasons.
+Status run_folder(const FolderRun& run);
+
 // Errors: `out` is one of the files that are read. `option`: the option that named it, for the message.
 Status refuse_input_as_output(const std::string& out, const std::vector<std::string>& inputs,
                               const std::string& option);

@@ -21,6 +21,12 @@ TEST(Main, HelpAndVersionGoToStandardOutput) {
   EXPECT_EQ(run_palpate({"--version"}).out.rfind("palpate ", 0), 0u);
 }
 
+TEST(Main, HelpIsAVerbToo) {
+  EXPECT_EQ(test::must_run({"help"}).out, test::must_run({"--help"}).out);
+  EXPECT_EQ(test::must_run({"help", "fit"}).out, test::must_run({"fit", "--help"}).out);
+  EXPECT_TRUE(test::fails(2, {"help", "fti"}, {"verb \"fti\"; did you mean fit?"}));
+}
+
 TEST(Main, WrongUsageIsOneLineThatNamesTheVerbs) {
   for (const std::vector<std::string>& arguments : {std::vector<std::string>{}, {"dance"}, {"--dance"}, {""}}) {
     EXPECT_TRUE(test::fails(2, arguments, {"known verbs: ", "scenes, devices"}));
