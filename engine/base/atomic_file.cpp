@@ -1,6 +1,7 @@
 #include "engine/base/atomic_file.h"
 
 #include <fcntl.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -70,23 +71,54 @@ void flush_folder_of(const std::string& path) {
 
 }  // namespace
 
-Result<AtomicFile> AtomicFile::create(const std::string& path, bool overwrite) {
+Result<AtomicFile> AtomicFile::prepare(const std::string& path, bool overwrite) {
   if (path == "-")
     return Error{"found - as the file to write, expected a name: standard output has the results; ./- is a file"};
   if (const Status target = check_target(path, overwrite); !target) return target.error();
   AtomicFile file;
   file.path_ = path;
   file.overwrite_ = overwrite;
+  return file;
+}
+
+Error AtomicFile::refused_folder() const {
+  const std::string why =
+      errno == ENOENT ? " does not exist; create it first" : " takes no new file: " + words_for(errno);
+  return Error{"cannot write " + path_ + ": the folder " + folder_of(path_) + why};
+}
+
+Result<AtomicFile> AtomicFile::create(const std::string& path, bool overwrite) {
+  Result<AtomicFile> prepared = prepare(path, overwrite);
+  if (!prepared) return prepared;
+  AtomicFile& file = *prepared;
   const std::string folder = folder_of(path);
   file.descriptor_ = open(folder.c_str(), O_WRONLY | O_TMPFILE | O_CLOEXEC, 0666);
-  if (file.descriptor_ >= 0 && access(link_to(file.descriptor_).c_str(), F_OK) == 0) return file;
+  if (file.descriptor_ >= 0 && access(link_to(file.descriptor_).c_str(), F_OK) == 0) return prepared;
   file.close_descriptor();
   file.temporary_path_ = temporary_name_in(folder);
   file.descriptor_ = open(file.temporary_path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-  if (file.descriptor_ >= 0) return file;
-  const std::string why =
-      errno == ENOENT ? " does not exist; create it first" : " takes no new file: " + words_for(errno);
-  return Error{"cannot write " + path + ": the folder " + folder + why};
+  if (file.descriptor_ < 0) return file.refused_folder();
+  return prepared;
+}
+
+// The lock of the part, which the system removes with the process, tells a part that is being written from one that was
+// left.
+Result<AtomicFile> AtomicFile::create_in_part(const std::string& path, bool overwrite) {
+  Result<AtomicFile> prepared = prepare(path, overwrite);
+  if (!prepared) return prepared;
+  const std::string part = part_of(path);
+  AtomicFile& file = *prepared;
+  file.descriptor_ = open(part.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666);
+  if (file.descriptor_ < 0) return file.refused_folder();
+  if (flock(file.descriptor_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
+    return Error{part + ": another program is writing it; choose another name, or end that program"};
+  struct stat status {};
+  if (fstat(file.descriptor_, &status) == 0 && status.st_size > 0 && !overwrite)
+    return Error{part + " is left from a program that was killed; rename it to keep it, or delete it"};
+  if (ftruncate(file.descriptor_, 0) != 0) return file.refused_folder();
+  file.temporary_path_ = part;
+  file.in_part_ = true;
+  return prepared;
 }
 
 AtomicFile::AtomicFile(AtomicFile&& other) noexcept
@@ -96,7 +128,7 @@ AtomicFile::AtomicFile(AtomicFile&& other) noexcept
       descriptor_(std::exchange(other.descriptor_, -1)),
       error_number_(other.error_number_),
       overwrite_(other.overwrite_),
-      published_(other.published_),
+      in_part_(other.in_part_),
       whole_bytes_(other.whole_bytes_) {}
 
 AtomicFile::~AtomicFile() { discard(); }
@@ -106,7 +138,8 @@ void AtomicFile::close_descriptor() noexcept {
 }
 
 void AtomicFile::discard() noexcept {
-  if (descriptor_ >= 0 && !published_ && !temporary_path_.empty()) unlink(temporary_path_.c_str());
+  const bool keeps_part = in_part_ && error_number_ != 0 && whole_bytes_ > 0;
+  if (descriptor_ >= 0 && !temporary_path_.empty() && !keeps_part) unlink(temporary_path_.c_str());
   close_descriptor();
 }
 
@@ -125,15 +158,15 @@ void AtomicFile::flush() {
   buffer_.clear();
   if (error_number_ == 0)
     whole_bytes_ = lseek(descriptor_, 0, SEEK_END);
-  else if (published_ && ftruncate(descriptor_, whole_bytes_) != 0)
+  else if (in_part_ && ftruncate(descriptor_, whole_bytes_) != 0)
     error_number_ = errno;
 }
 
 void AtomicFile::write(std::string_view text) {
   if (descriptor_ < 0 || error_number_ != 0) return;
   buffer_.append(text);
-  // After publishing, text is only written by `publish` and `commit`, in complete pieces.
-  if (buffer_.size() >= kFlushBytes && !published_) flush();
+  // A part has complete pieces only, which `flush_part` and `commit` write.
+  if (buffer_.size() >= kFlushBytes && !in_part_) flush();
 }
 
 Error AtomicFile::failure() const {
@@ -149,7 +182,7 @@ Status AtomicFile::take_name() {
     if (linkat(AT_FDCWD, link.c_str(), AT_FDCWD, temporary_path_.c_str(), AT_SYMLINK_FOLLOW) != 0)
       error_number_ = errno;
   }
-  if (error_number_ == 0 && !published_) {
+  if (error_number_ == 0) {
     error_number_ = overwrite_ ? (rename(temporary_path_.c_str(), path_.c_str()) == 0 ? 0 : errno)
                                : rename_without_replacing(temporary_path_.c_str(), path_.c_str());
   }
@@ -158,12 +191,10 @@ Status AtomicFile::take_name() {
   return failure();
 }
 
-Status AtomicFile::publish() {
+Status AtomicFile::flush_part() {
   if (descriptor_ < 0) return failure();
   flush();
-  Status taken = take_name();
-  published_ = published_ || taken;
-  return taken;
+  return error_number_ == 0 ? Status() : failure();
 }
 
 Status AtomicFile::commit() {

@@ -1,4 +1,4 @@
-// Files that appear under their final name only when they are complete, or grow there by complete pieces.
+// Files that appear under their final name only when they are complete.
 // Thread guarantee: slow side only.
 #pragma once
 
@@ -10,12 +10,18 @@
 namespace palpate {
 
 // Collects output in a file without a name; `commit` flushes it to disk and names it. If the object is destroyed or the
-// program is killed before that, no file is left but a published one. On a file system without unnamed files
-// (O_TMPFILE), a program that is killed leaves a hidden file in the folder of `path`.
+// program is killed before that, no file is left. On a file system without unnamed files (O_TMPFILE), a program that is
+// killed leaves a hidden file in the folder of `path`.
 class AtomicFile {
  public:
+  // For output that takes minutes to collect: it is in `path`.part, where each `flush` adds complete pieces, and stays
+  // there if the program is killed or a write fails.
+  static std::string part_of(const std::string& path) { return path + ".part"; }
   // Errors: `path` exists and `overwrite` is false, is a folder or a device; the folder is missing or not writable.
   static Result<AtomicFile> create(const std::string& path, bool overwrite);
+  // Errors: also, another program writes that part; it is left from a program that was killed, and `overwrite` is
+  // false.
+  static Result<AtomicFile> create_in_part(const std::string& path, bool overwrite);
 
   AtomicFile(AtomicFile&& other) noexcept;
   ~AtomicFile();
@@ -25,16 +31,17 @@ class AtomicFile {
   // Whether an input/output error has occurred, which `commit` will return.
   bool failed() const noexcept { return error_number_ != 0; }
 
-  // Gives the file its final name with all that was written. Each further call appends the text since the last one: all
-  // of it or nothing, even if the program is killed. Errors: as `commit`.
-  Status publish();
+  // Adds what was written to the part: all of it or nothing, even if the disk is full. Errors: as `commit`.
+  Status flush_part();
 
   // Errors: any input/output error since `create`, e.g. no space left; another file was created under the name in the
-  // meantime, unless `overwrite`. Then the earlier or the published file, if any, is unchanged.
+  // meantime, unless `overwrite`. Then the earlier file, if any, is unchanged.
   Status commit();
 
  private:
   AtomicFile() = default;
+  static Result<AtomicFile> prepare(const std::string& path, bool overwrite);
+  Error refused_folder() const;  // by errno
   void discard() noexcept;
   Status take_name();
   Error failure() const;  // why nothing can be written any more
@@ -45,7 +52,7 @@ class AtomicFile {
   std::string temporary_path_;  // empty: the file has no name
   std::string buffer_;
   int descriptor_ = -1, error_number_ = 0;
-  bool overwrite_ = false, published_ = false;
+  bool overwrite_ = false, in_part_ = false;
   long long whole_bytes_ = 0;  // length without the text of a failed write
 };
 

@@ -1,14 +1,7 @@
 #include "engine/recording/recording_writer.h"
 
-#include <sys/socket.h>
-#include <sys/stat.h>
-#include <sys/un.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <array>
-#include <cerrno>
-#include <filesystem>
 #include <limits>
 #include <string_view>
 
@@ -48,36 +41,17 @@ std::string line_of(RecordingColumns columns, const Field& field) {
   return line + '\n';
 }
 
-// Reserves the name of a file by an abstract Unix address, which the system frees with its descriptor, made of the
-// file's folder, as the disk knows it, and its name. A system without such addresses reserves nothing.
-Result<std::shared_ptr<void>> claim_name(const std::string& path) {
-  const std::filesystem::path file(path);
-  struct stat folder {};
-  stat(file.has_parent_path() ? file.parent_path().c_str() : ".", &folder);
-  const std::string name = "palpate-recording-" + std::to_string(folder.st_dev) + "-" + std::to_string(folder.st_ino) +
-                           "-" + std::to_string(std::hash<std::string>()(file.filename().string()));
-  sockaddr_un address{};
-  address.sun_family = AF_UNIX;
-  std::ranges::copy(name, address.sun_path + 1);
-  const int descriptor = socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0);
-  std::shared_ptr<void> claim(nullptr, [descriptor](void*) { ::close(descriptor); });
-  const auto size = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + 1 + name.size());
-  if (bind(descriptor, reinterpret_cast<const sockaddr*>(&address), size) == 0 || errno != EADDRINUSE) return claim;
-  return Error{path + ": another recording is being written into it; choose another name, or end that one"};
-}
-
 }  // namespace
 
 Result<RecordingWriter> RecordingWriter::create(const std::string& path, RecordingColumns columns,
-                                                const std::vector<std::string>& comments, bool overwrite) {
-  auto file = AtomicFile::create(path, overwrite);
+                                                const std::vector<std::string>& comments, bool overwrite,
+                                                bool in_part) {
+  auto file = in_part ? AtomicFile::create_in_part(path, overwrite) : AtomicFile::create(path, overwrite);
   if (!file) return file.error();
-  auto claim = claim_name(path);
-  if (!claim) return claim.error();
   std::string head;
   for (const std::string& comment : comments) append_comment(head, comment);
   file->write(head + line_of(columns, [](std::size_t i) { return kColumnNames[i]; }));
-  return RecordingWriter(std::move(*claim), std::move(*file), path, columns);
+  return RecordingWriter(std::move(*file), path, columns, overwrite);
 }
 
 Status RecordingWriter::add(const RecordingRow& row) {
@@ -92,11 +66,10 @@ void RecordingWriter::note(const std::string& comment) {
   if (++noted_ <= kMostNotes) append_comment(notes_, comment);
 }
 
-Status RecordingWriter::publish() {
-  if (rules_.rows() < kRateRows) return {};
-  Status published = file_.publish();
-  if (published) published_rows_ = rules_.rows();
-  return published;
+Status RecordingWriter::flush() {
+  Status flushed = file_.flush_part();
+  if (flushed) flushed_rows_ = rules_.rows();
+  return flushed;
 }
 
 Status RecordingWriter::commit() {
@@ -105,11 +78,13 @@ Status RecordingWriter::commit() {
     const AtomicFile given_up = std::move(file_);
     return Error{path_ + ": cannot write: " + fault->text};
   }
-  Status committed = file_.commit();
-  if (!committed || notes_.empty()) return committed;
+  if (notes_.empty()) return file_.commit();
   if (noted_ > kMostNotes) append_comment(notes_, std::to_string(noted_ - kMostNotes) + " more such notes");
-  if (const auto text = read_plain_file(path_, "the recording", "", std::numeric_limits<std::size_t>::max()))
-    static_cast<void>(write_file_atomically(path_, notes_ + *text, true));
+  if (const Status flushed = flush(); !flushed) return flushed;
+  const auto rows =
+      read_plain_file(AtomicFile::part_of(path_), "the recording", "", std::numeric_limits<std::size_t>::max());
+  if (!rows || !write_file_atomically(path_, notes_ + *rows, overwrite_)) return file_.commit();
+  const AtomicFile copied = std::move(file_);
   return {};
 }
 

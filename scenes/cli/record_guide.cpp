@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "engine/base/atomic_file.h"
 #include "engine/live/pacer.h"
 
 namespace palpate::cli {
@@ -12,10 +13,10 @@ constexpr double kRest = 10.0;  // pause after a check, as a multiple of its dur
 constexpr int kSmallStrokes = 10;
 constexpr const char* kFollowed[] = {"explored", "no_hold", "short_hold"};
 
-RecordGuide::RecordGuide(std::string path, const CheckRequest& request) : path_(std::move(path)), request_(request) {}
+RecordGuide::RecordGuide(const std::string& path, const CheckRequest& request)
+    : path_(AtomicFile::part_of(path)), request_(request) {}
 
 std::vector<std::string> RecordGuide::advice() const {
-  // The file does not exist before its first 1000 rows.
   const auto file = check_recording_file(path_, request_);
   if (!file || file->check.measures.contact_rows == 0) return {"next: touch the block, then press it slowly"};
   std::vector<std::string> lines;

@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t kSamplesAtOnce = 1024;
 constexpr auto kPause = std::chrono::milliseconds(20);
-constexpr int kRoundsToDisk = 10;  // the file is published after so many rounds
+constexpr int kRoundsToDisk = 10;  // rows are written to the disk after so many rounds
 
 // The force to record, indexed by ReferenceKind.
 constexpr double RecordedSample::*kForces[] = {&RecordedSample::measured_N, &RecordedSample::reference_N,
@@ -48,7 +48,7 @@ SessionRecorder::~SessionRecorder() {
 Status SessionRecorder::start(const RecorderRequest& request) {
   if (running_.valid()) return Error{"already recording into " + request_.path + "; stop that one first"};
   Result<RecordingWriter> writer =
-      RecordingWriter::create(request.path, request.columns, request.comments, request.overwrite);
+      RecordingWriter::create(request.path, request.columns, request.comments, request.overwrite, true);
   if (!writer) return writer.error();
   writer_.emplace(std::move(*writer));
   request_ = request;
@@ -76,7 +76,7 @@ Notice SessionRecorder::work() {
     last = stop_;
     drain();
     // A write error is persistent: this loop ends, and `finish` reports it.
-    if (++rounds % kRoundsToDisk == 0) static_cast<void>(writer_->publish());
+    if (++rounds % kRoundsToDisk == 0) static_cast<void>(writer_->flush());
   }
   Notice outcome = finish();
   writer_.reset();
@@ -127,10 +127,10 @@ void SessionRecorder::write(const RecordedSample& sample) {
 Notice SessionRecorder::finish() {
   const std::uint64_t dropped = loop_.recorded().dropped() - dropped_before_;
   const Status status = writer_->commit();
-  if (!status && writer_->published_rows() == 0) return {"the recording was lost: " + status.error().message, true};
+  if (!status && writer_->flushed_rows() == 0) return {"the recording was lost: " + status.error().message, true};
   if (!status) {
-    return {"the recording ended early: " + status.error().message + "; " + request_.path + " has its first " +
-                std::to_string(writer_->published_rows()) + " rows; make room, and record the rest into another file",
+    return {"the recording ended early: " + status.error().message + "; " + AtomicFile::part_of(request_.path) + " has its first " +
+                std::to_string(writer_->flushed_rows()) + " rows; make room, and record the rest into another file",
             true};
   }
   return {"recorded " + std::to_string(writer_->rows()) + " rows (" + fixed(time_.last_s() - time_.gaps_s(), 1) +

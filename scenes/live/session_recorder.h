@@ -1,6 +1,6 @@
 // Writes every sample of a session into a recording file.
 // The loop puts samples into a ring (engine/live/live_tick.h). The recorder's thread empties it every 20 ms into a
-// RecordingWriter and publishes whole rows to the disk about every 0.2 s. The ring holds half a minute at 1 kHz;
+// RecordingWriter, which writes whole rows to the disk about every 0.2 s. The ring holds half a minute at 1 kHz;
 // a full ring loses samples, which are counted. Time begins at 0. After a pause the time is that of the device if it
 // went on. If it began again (a replay restarts, a seek backwards), the new stream begins kStreamGap_s after the last
 // sample, so that features computed from the file forget the stream before, and a comment in the file says so. Samples

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cstring>
+#include <filesystem>
 #include <limits>
 #include <random>
 
@@ -129,33 +130,52 @@ TEST(RecordingWriter, GivesTheSameFileRowByRowAndLeavesOutWhatIsRefused) {
   EXPECT_EQ(test::read_text(folder.file("rows.csv")), test::read_text(folder.file("whole.csv")));
 }
 
+Result<RecordingWriter> writer_in_part(const test::TemporaryFolder& folder, bool overwrite) {
+  return RecordingWriter::create(folder.file("a.csv"), {}, {"first"}, overwrite, true);
+}
+
 TEST(RecordingWriter, ANameThatIsBeingWrittenIsRefusedAtTheStart) {
   const test::TemporaryFolder folder;
-  const auto writer = [&](const char* name, bool overwrite) {
-    return RecordingWriter::create(folder.file(name), {}, {}, overwrite);
-  };
   {
-    const auto first = writer("a.csv", false);
+    const auto first = writer_in_part(folder, false);
     ASSERT_TRUE(first.ok());
     for (const bool overwrite : {false, true}) {
-      const auto second = writer("a.csv", overwrite);
-      ASSERT_FALSE(second.ok());
-      EXPECT_TRUE(test::has_parts(second.error().message, {"a.csv: another recording is being written into it; "}));
+      EXPECT_EQ(
+          writer_in_part(folder, overwrite).error().message,
+          folder.file("a.csv.part") + ": another program is writing it; choose another name, or end that program");
     }
-    EXPECT_FALSE(writer("./a.csv", false).ok()) << "the same file";
-    EXPECT_TRUE(writer("b.csv", false).ok());
   }
-  EXPECT_TRUE(writer("a.csv", false).ok()) << "the first one was given up";
+  EXPECT_TRUE(writer_in_part(folder, false).ok()) << "the first one was given up";
+}
+
+// As after a kill: the rows of the part are whole, and only --force replaces them.
+TEST(RecordingWriter, ThePartOfAKilledProgramIsKept) {
+  const test::TemporaryFolder folder;
+  const std::string part = folder.file("a.csv.part");
+  {
+    auto writer = test::must(writer_in_part(folder, false));
+    for (int i = 0; i < 2000; ++i) ASSERT_TRUE(writer.add({1e-3 * i, 0.0, 0.0, 0.0, 0.0}));
+    ASSERT_TRUE(writer.flush());
+    EXPECT_EQ(writer.flushed_rows(), 2000u);
+    std::filesystem::copy(part, folder.file("killed"));
+  }
+  EXPECT_EQ(folder.entries(), std::vector<std::string>{"killed"});
+  std::filesystem::rename(folder.file("killed"), part);
+  EXPECT_EQ(test::must(read_recording(part)).rows.size(), 2000u);
+  EXPECT_EQ(writer_in_part(folder, false).error().message,
+            part + " is left from a program that was killed; rename it to keep it, or delete it");
+  EXPECT_TRUE(writer_in_part(folder, true).ok());
 }
 
 TEST(RecordingWriter, WritesNotesAboveTheRows) {
   const test::TemporaryFolder folder;
-  auto writer = test::must(RecordingWriter::create(folder.file("a.csv"), {}, {"first"}, false));
+  auto writer = test::must(writer_in_part(folder, false));
   for (int i = 0; i < 2000; ++i) {
     ASSERT_TRUE(writer.add({1e-3 * i, 0.0, 0.0, 0.0, 0.0}));
     if (i % 80 == 40) writer.note("note " + std::to_string(i));
-    if (i != 1500) continue;
-    ASSERT_TRUE(writer.publish());
+    if (i == 1500) {
+      ASSERT_TRUE(writer.flush());
+    }
   }
   ASSERT_TRUE(writer.commit());
   EXPECT_TRUE(test::has_parts(test::read_text(folder.file("a.csv")),

@@ -212,11 +212,12 @@ TEST(SessionRecorder, ReportsAMissingFolder) {
   EXPECT_TRUE(folder.entries().empty());
 }
 
-// On a full disk a recording ends by itself. The published rows stay, and the next recording may begin.
-TEST(SessionRecorder, KeepsThePublishedRowsWhenTheDiskIsFull) {
-  for (const bool published : {false, true}) {
-    SCOPED_TRACE(published);
+// On a full disk a recording ends by itself. The rows on the disk stay, and the next recording may begin.
+TEST(SessionRecorder, KeepsTheRowsOnTheDiskWhenItIsFull) {
+  for (const bool flushed : {false, true}) {
+    SCOPED_TRACE(flushed);
     const TemporaryFolder folder;
+    const std::string part = folder.file("a.csv.part");
     PathDevice device(test::strokes);
     Rig rig(device);
     Notice notice;
@@ -224,7 +225,7 @@ TEST(SessionRecorder, KeepsThePublishedRowsWhenTheDiskIsFull) {
       const test::FullDisk full(100'000);
       ASSERT_TRUE(rig.start(folder.file("a.csv"), ReferenceKind::truth).ok());
       FakePacer pacer([&](int wait) -> std::int64_t {
-        for (int i = 0; published && wait == 1500 && i < 200 && folder.entries().empty(); ++i)
+        for (int i = 0; flushed && wait == 1500 && i < 200 && std::filesystem::file_size(part) == 0; ++i)
           std::this_thread::sleep_for(std::chrono::milliseconds(10));
         if (wait == 30000) rig.loop.request_stop();
         return 0;
@@ -234,11 +235,11 @@ TEST(SessionRecorder, KeepsThePublishedRowsWhenTheDiskIsFull) {
     }
     EXPECT_TRUE(notice.problem);
     EXPECT_TRUE(test::has_parts(notice.text, {"File too large"}));
-    ASSERT_EQ(folder.entries().empty(), !published);
+    ASSERT_EQ(folder.entries().empty(), !flushed);
     EXPECT_TRUE(rig.start(folder.file("b.csv"), ReferenceKind::truth).ok());
-    if (!published) continue;
-    const auto kept = test::must(read_recording(folder.file("a.csv")));
-    EXPECT_TRUE(test::has_parts(notice.text, {"first " + std::to_string(kept.rows.size()) + " rows"}));
+    if (!flushed) continue;
+    const auto kept = test::must(read_recording(part));
+    EXPECT_TRUE(test::has_parts(notice.text, {part + " has its first " + std::to_string(kept.rows.size()) + " rows"}));
   }
 }
 
