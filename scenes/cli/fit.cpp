@@ -18,7 +18,6 @@
 #include "models/fit/fit.h"
 #include "models/model/file/model_io.h"
 #include "models/model/fitted_model.h"
-#include "scenes/cli/progress.h"
 #include "scenes/cli/verbs.h"
 #include "scenes/evaluation/error_figures.h"
 #include "scenes/scene/scene.h"

@@ -14,7 +14,6 @@
 #include "engine/base/atomic_file.h"
 #include "engine/base/text.h"
 #include "engine/base/whole_file.h"
-#include "scenes/cli/progress.h"
 #include "scenes/cli/verbs.h"
 #include "scenes/report/publish.h"
 

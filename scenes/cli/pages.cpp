@@ -7,7 +7,6 @@
 
 #include "engine/base/text.h"
 #include "engine/base/whole_file.h"
-#include "scenes/cli/progress.h"
 #include "scenes/cli/verbs.h"
 #include "scenes/hard/hard_table.h"
 #include "scenes/report/paper.h"

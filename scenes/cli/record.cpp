@@ -2,18 +2,21 @@
 #include <poll.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <memory>
 #include <string>
 #include <thread>
+#include <utility>
 
 #include "devices/bridge/byte_stream.h"
 #include "devices/registry/device_registry.h"
+#include "engine/base/atomic_file.h"
 #include "engine/base/signals.h"
 #include "engine/base/text.h"
 #include "engine/live/haptics_loop.h"
-#include "scenes/cli/record_guide.h"
+#include "engine/live/pacer.h"
 #include "scenes/cli/verbs.h"
 #include "scenes/live/session_recorder.h"
 #include "scenes/scene/folders.h"
@@ -22,6 +25,11 @@ namespace palpate::cli {
 namespace {
 
 constexpr auto kPause = std::chrono::milliseconds(100);
+// Of the guide.
+constexpr double kPeriod_s = 2.0;
+constexpr double kRest = 10.0;  // pause after a check, as a multiple of its duration
+constexpr int kSmallStrokes = 10;
+constexpr const char* kFollowed[] = {"explored", "no_hold", "short_hold"};
 
 struct RecordOptions {
   std::string device, out, scene = "silicone_block";
@@ -158,6 +166,31 @@ Status run_record(const RecordOptions& options) {
 }
 
 }  // namespace
+
+RecordGuide::RecordGuide(const std::string& path, const CheckRequest& request)
+    : path_(AtomicFile::part_of(path)), request_(request) {}
+
+std::vector<std::string> RecordGuide::advice() const {
+  const auto file = check_recording_file(path_, request_);
+  if (!file || file->check.measures.contact_rows == 0) return {"next: touch the block, then press it slowly"};
+  std::vector<std::string> lines;
+  for (const Finding& finding : file->check.findings) {
+    const bool followed = std::ranges::find(kFollowed, finding.code) != std::end(kFollowed);
+    if (followed && !finding.advice.empty()) lines.push_back(finding.advice);
+  }
+  if (file->check.measures.small_strokes < kSmallStrokes)
+    lines.emplace_back("make small strokes: stay in the block and move a little in and out");
+  if (lines.empty()) lines.emplace_back("nothing is missing: Ctrl-C ends the recording");
+  return lines;
+}
+
+std::vector<std::string> RecordGuide::update(double now_s) {
+  if (now_s < next_s_) return {};
+  const double start_s = steady_now_s();
+  std::vector<std::string> lines = advice();
+  next_s_ = now_s + std::max(kPeriod_s, kRest * (steady_now_s() - start_s));
+  return std::exchange(printed_, lines) == lines ? std::vector<std::string>{} : lines;
+}
 
 void add_record(CLI::App& app, Verbs& verbs) {
   auto options = std::make_shared<RecordOptions>();

@@ -8,7 +8,6 @@
 
 #include "engine/base/atomic_file.h"
 #include "models/fit/model_plan.h"
-#include "scenes/cli/progress.h"
 #include "scenes/cli/verbs.h"
 #include "scenes/study/study_analysis.h"
 #include "scenes/study/study_file.h"

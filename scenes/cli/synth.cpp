@@ -7,7 +7,6 @@
 #include "engine/base/text.h"
 #include "engine/recording/recording.h"
 #include "models/fit/model_plan.h"
-#include "scenes/cli/progress.h"
 #include "scenes/cli/verbs.h"
 #include "scenes/material/rig.h"
 

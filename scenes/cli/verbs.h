@@ -5,6 +5,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <chrono>
 #include <functional>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -12,7 +13,9 @@
 #include <utility>
 #include <vector>
 
+#include "engine/base/parallel.h"
 #include "engine/base/result.h"
+#include "engine/base/signals.h"
 #include "models/check/check_recording.h"
 #include "models/model/fitted_model.h"
 #include "scenes/scene/scene.h"
@@ -95,6 +98,61 @@ Status refuse_input_as_output(const std::string& out, const std::vector<std::str
 
 // Checks that an option is a finite number from `low` to `high`; CLI::Range accepts NaN.
 CLI::Validator number_from(double low, double high);
+
+// While a ProgressLine exists, the first Ctrl-C (SIGINT), SIGTERM or SIGHUP requests a stop instead of ending the
+// program; the second ends it (signals.h). There may be only one at a time.
+class ProgressLine {
+ public:
+  explicit ProgressLine(std::string label);
+  ProgressLine(const ProgressLine&) = delete;
+  ProgressLine& operator=(const ProgressLine&) = delete;
+  ~ProgressLine();  // clears the line
+
+  // `fraction`: the share done, 0..1; a smaller one than before is drawn as before. Returns false after an interrupt:
+  // then end the job without a file.
+  bool update(double fraction);
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  StopListener listener_;
+  std::string label_;
+  Clock::time_point start_;
+  Clock::time_point last_drawn_;
+  bool terminal_, drawn_ = false;
+  double most_ = 0.0;  // of the fractions
+};
+
+// For processes of which another one shows the progress: no line is drawn any more.
+void hide_progress();
+
+// Calls `make` with the progress on stderr.
+auto with_progress(std::string label, const auto& make) {
+  ProgressLine line(std::move(label));
+  return make(FitControl{[&](double fraction) { return line.update(fraction); }});
+}
+
+// "label  37 %  12 s left"; the remaining time is shown after 2 % and 1 s.
+std::string progress_text(const std::string& label, double fraction, double elapsed_s);
+
+// Advice on what to press next during a recording into `path`: that of the findings of `check` on coverage and holds,
+// and small strokes.
+class RecordGuide {
+ public:
+  RecordGuide(const std::string& path, const CheckRequest& request);
+
+  // Checks the file every two seconds, or less often so that checks take at most a tenth of the time. Returns the
+  // lines to print, none when nothing has changed. `now_s`: steady clock.
+  std::vector<std::string> update(double now_s);
+
+ private:
+  std::vector<std::string> advice() const;
+
+  std::string path_;
+  CheckRequest request_;
+  double next_s_ = 0.0;
+  std::vector<std::string> printed_;
+};
 
 // Prints to stdout. Bytes that are not UTF-8, as in paths, are replaced.
 void print_json(const nlohmann::ordered_json& json);

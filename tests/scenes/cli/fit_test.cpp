@@ -232,5 +232,34 @@ TEST_F(FitVerb, NeverWritesOverItsRecording) {
   EXPECT_EQ(test::read_text(recording), "mine\n");
 }
 
+// A model for each recording of a folder, one table, and the same command does what is missing.
+TEST_F(FitVerb, AFolderIsFittedFileByFileAndContinued) {
+  const std::string out = folder_.file("models"), in = folder_.file("in");
+  std::filesystem::create_directory(in);
+  for (const char* name : {"a", "b", "c"})
+    ASSERT_TRUE(write_recording(in + "/" + name + ".csv", example_recording(1000, 250.0), {}, false).ok());
+  const Arguments command = {"fit", "--recording", in, "--method", "trend", "--out", out};
+  EXPECT_TRUE(has_parts(must_run(command).out, {"3 of 3 recordings are done, 0 of them before", "models.csv"}));
+  const std::string table = read_text(out + "/models.csv");
+  EXPECT_TRUE(has_parts(table, {"recording,model,samples,", "\na,trend,1000,", "\nc,trend,1000,"}));
+  const std::string before = read_text(out + "/a.json");
+
+  std::filesystem::remove(out + "/b.json");
+  EXPECT_TRUE(has_parts(must_run(command).out, {"3 of 3 recordings are done, 2 of them before"}));
+  EXPECT_EQ(read_text(out + "/a.json"), before);
+  EXPECT_EQ(read_text(out + "/models.csv"), table);
+
+  EXPECT_TRUE(fails(1, {"fit", "--recording", in, "--method", "random", "--out", out},
+                    {out + " exists, and this command has not made it; ", "--force"}));
+  folder_.with_file("in/d.csv", "time_s,position_m,force_N\n");
+  EXPECT_TRUE(fails(1, command, {"1 of 4 recordings are not done", "d.csv"}));
+  EXPECT_TRUE(has_parts(read_text(out + "/models.csv"), {"\nc,trend,1000,", "\nd,,,,,", "d.csv"}));
+  std::filesystem::remove(in + "/d.csv");
+
+  // With a file to write, the recordings of the folder are one training set.
+  must_run({"fit", "--recording", in, "--method", "trend", "--out", this->out()});
+  EXPECT_EQ(load_model(this->out()).value()->data().provenance.recordings, (Arguments{"a", "b", "c"}));
+}
+
 }  // namespace
 }  // namespace palpate::test

@@ -1,4 +1,4 @@
-#include "scenes/cli/progress.h"
+#include "scenes/cli/verbs.h"
 
 #include <gtest/gtest.h>
 #include <signal.h>

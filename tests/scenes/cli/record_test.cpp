@@ -8,7 +8,7 @@
 #include <string>
 
 #include "engine/recording/recording.h"
-#include "scenes/cli/record_guide.h"
+#include "scenes/cli/verbs.h"
 #include "tests/support/bridge_session.h"
 #include "tests/support/message_parts.h"
 #include "tests/support/run_program.h"
@@ -99,9 +99,9 @@ TEST(DevicesTest, RefusesADeviceThatDoesNotReportItsWatchdog) {
 
 TEST(RecordGuide, GivesTheAdviceOfCheckOnce) {
   const test::TemporaryFolder folder;
-  const std::string path = folder.file("press.csv");
+  const std::string path = folder.file("press.csv.part");
   const CheckRequest request{{}, true};
-  cli::RecordGuide guide(path, request);
+  cli::RecordGuide guide(folder.file("press.csv"), request);
   EXPECT_EQ(guide.update(0.0), std::vector<std::string>{"next: touch the block, then press it slowly"});
   EXPECT_TRUE(guide.update(1.0).empty()) << "no check within two seconds";
 
@@ -112,7 +112,7 @@ TEST(RecordGuide, GivesTheAdviceOfCheckOnce) {
     text += std::to_string(1e-3 * i) + "," + std::to_string(position_m) + "," +
             std::to_string(500.0 * std::max(0.0, position_m)) + "\n";
   }
-  folder.with_file("press.csv", text);
+  folder.with_file("press.csv.part", text);
   const std::vector<std::string> lines = guide.update(1e6);
   ASSERT_EQ(lines.size(), 3u);
   EXPECT_TRUE(test::has_parts(lines[0], {"record next: ", "above", "mm/s at ", " mm"}));
@@ -136,7 +136,7 @@ TEST(RecordGuide, SaysThatNothingIsMissing) {
   std::vector<RecordingRow> hold(2600, *deepest);
   for (std::size_t i = 0; i < hold.size(); ++i) hold[i].time_s += -2.6 + 1e-3 * static_cast<double>(i);
   recording.rows.insert(deepest, hold.begin(), hold.end());
-  ASSERT_TRUE(write_recording(path, recording, {}, true).ok());
+  ASSERT_TRUE(write_recording(path + ".part", recording, {}, true).ok());
   cli::RecordGuide guide(path, {{}, true});
   EXPECT_EQ(guide.update(0.0), std::vector<std::string>{"nothing is missing: Ctrl-C ends the recording"});
 }
