@@ -14,8 +14,6 @@
 // size/       fits against the number of sites, 1,000 to 1,000,000
 // feature/    a tick of the feature filter, one kind of feature at a time
 // dimension/  fits and evaluation against the number of features, 1 to 8
-// peer/       Palpate's methods beside ALGLIB, dlib and scipy where these are
-//             installed: fit, query and error on the same recordings
 //
 // Prints the tables of tests/bench/README.md at the end. Figures are medians over
 // repetitions: processor time of queries, and wall time of fits (which use all
@@ -102,15 +100,6 @@ void add_context() {
   benchmark::AddCustomContext("build type", PALPATE_BUILD_TYPE);
   benchmark::AddCustomContext("instructions", simd::target_name());
   benchmark::AddCustomContext("commit", *PALPATE_COMMIT != '\0' ? PALPATE_COMMIT : "unknown");
-#ifndef PALPATE_WITH_ALGLIB
-  benchmark::AddCustomContext("peer ALGLIB", "not installed, apt install libalglib-dev, then configure again");
-#endif
-#ifndef PALPATE_WITH_DLIB
-  benchmark::AddCustomContext("peer dlib", "not installed, apt install libdlib-dev, then configure again");
-#endif
-#ifndef PALPATE_PYTHON
-  benchmark::AddCustomContext("peer scipy", "not installed, apt install python3-scipy, then configure again");
-#endif
 }
 
 }  // namespace

@@ -156,25 +156,6 @@ void print_features(const BenchRows& rows) {
     if (name.starts_with("feature/")) table.add({name.substr(8), duration(row.seconds)});
 }
 
-// "peer/silicone/NAME/fit" and "/query", one line for each name. Their settings follow as a list.
-void print_peers(const BenchRows& rows) {
-  const std::string start = "peer/silicone/", end = "/fit";
-  Table table("Beside peers", {"fitted by", "sites", "fit", "one query", "RMS [mN]", "within the JND [%]",
-                               "with trend: RMS [mN]", "within the JND [%]"});
-  std::string settings;
-  for (const auto& [name, fit] : rows) {
-    if (!name.starts_with(start) || !name.ends_with(end)) continue;
-    const std::string peer = name.substr(start.size(), name.size() - start.size() - end.size());
-    const BenchRow* query = find(rows, start + peer + "/query");
-    table.add({peer, thousands(static_cast<long>(fit.counters.at("sites"))), duration(fit.seconds),
-               query != nullptr ? duration(query->seconds) : "-", fixed(fit.counters.at("rms_mN"), 1),
-               fixed(fit.counters.at("within_jnd_pct"), 2), fixed(fit.counters.at("with_trend_rms_mN"), 1),
-               fixed(fit.counters.at("with_trend_within_jnd_pct"), 2)});
-    settings += "- " + peer + ": " + fit.label + "\n";
-  }
-  if (!settings.empty()) std::printf("\n%s", settings.c_str());
-}
-
 }  // namespace
 
 std::string duration(double seconds) {
@@ -194,7 +175,6 @@ void print_tables(const BenchRows& rows) {
   print_ratios(rows, Table("Whole beside bare", {"work", "whole", "bare", "ratio", "goal"}), kWholeRatios);
   print_against(rows, "Cost over N", "sites, 4-D", kSizeColumns);
   print_against(rows, "Cost over dimension", "features", kDimensionColumns);
-  print_peers(rows);
   print_features(rows);
   std::fflush(stdout);
 }
