@@ -13,12 +13,58 @@
 namespace palpate {
 namespace {
 
-constexpr int kRead_ms = 50;  // short, so that the reader thread ends soon after it is stopped
+constexpr std::size_t kLongestTarget = 400;  // in messages
+constexpr int kRead_ms = 50;                 // short, so that the reader thread ends soon after it is stopped
 // A board that resets takes two seconds; a program with an SDK may search for its device first.
 constexpr double kFirstFrame_s = 4.0, kFirstFrameOfProgram_s = 20.0;
-// The rate of the first frames is the best of so many trials, because a program may pause while it starts.
+// Rate, clock and sequence of the first frames are good in one of so many trials, because a program may pause while it
+// starts.
 constexpr int kTrials = 3, kIntervals = 8;
 constexpr double kTrial_s = 0.1;
+// 10000 a second with 5 % for the error of a clock.
+constexpr double kShortestInterval_s = 1.0 / 10500.0;
+
+// One trial: so many intervals between frames, and the time that they took by this computer's and the device's clock.
+struct Trial {
+  int intervals = -1;
+  double first_s = 0.0, span_s = 0.0, device_s = 0.0;
+  DeviceReading first;
+  bool counts = true;  // the sequence increased by 1 with each frame, or a few were lost
+
+  void take(const DeviceReading& reading, double now_s) {
+    if (++intervals == 0) {
+      first_s = now_s;
+      first = reading;
+    }
+    span_s = now_s - first_s;
+    device_s = 1e-6 * static_cast<std::int32_t>(reading.time_us - first.time_us);
+    counts = static_cast<std::int32_t>(reading.sequence - first.sequence) >= intervals;
+  }
+  bool complete() const { return intervals >= kIntervals && std::max(span_s, device_s) >= kTrial_s; }
+  // By the slower clock, because the first frames may have waited in a queue.
+  double interval_s() const { return std::max(span_s, device_s) / intervals; }
+
+  // What makes the device unusable and what to do; empty: nothing.
+  std::string problem() const {
+    if (!counts) return ": the sequence of its frames does not increase by 1 with each; count them in bytes 4 to 7";
+    const double ratio = device_s / span_s;
+    if (ratio > 0.5 && ratio < 2.0) return rate_problem(interval_s());
+    std::string unit;
+    for (const auto& [name, per_us] : {std::pair{"s", 1e-6}, {"ms", 1e-3}, {"ns", 1e3}})
+      if (ratio > 0.5 * per_us && ratio < 2.0 * per_us) unit = std::string("; it seems to count ") + name;
+    if (ratio == 0.0) unit = "; it stands still";
+    return ": its clock advances by " + fixed(1e6 * device_s, 0) + " in " + fixed(span_s, 2) +
+           " s, expected microseconds in bytes 8 to 11" + unit;
+  }
+
+ private:
+  static std::string rate_problem(double interval_s) {
+    if (interval_s > SampleRate::kLongestInterval_s) return too_slow("", interval_s).message;
+    if (interval_s >= kShortestInterval_s) return {};
+    return ": sends " + fixed(1.0 / interval_s, 0) +
+           " samples a second, expected 100 to 10000; lower the rate of the device's program";
+  }
+};
 
 // The limits of a recording; larger values are invalid.
 constexpr std::int32_t kMost_nm = 1'000'000'000;
@@ -118,7 +164,9 @@ const DeviceProtocol kBridgeProtocol = {
     .encode_stop = stop_bridge,
 };
 
-BridgeBus::BridgeBus(std::string target) : target_(std::move(target)) { info_.path = "bridge:" + target_; }
+BridgeBus::BridgeBus(std::string target) : target_(std::move(target)) {
+  info_.path = "bridge:" + printable(target_, kLongestTarget);
+}
 
 Result<std::unique_ptr<DeviceConnection>> BridgeBus::open(const DeviceNode&) {
   Result<std::unique_ptr<ByteStream>> stream = ByteStream::open(target_);
@@ -136,9 +184,10 @@ Result<OpenedDevice> BridgeBus::open_and_identify() {
   OpenedDevice result{info_, &kBridgeProtocol};
   const double patience_s = target_.starts_with("exec:") ? kFirstFrameOfProgram_s : kFirstFrame_s;
   const double until_s = steady_now_s() + patience_s;
-  double last_sent_s = 0.0, first_s = 0.0, interval_s = HUGE_VAL;
-  std::uint32_t first_us = 0;
-  for (int frames = 0, intervals = -1, trials = 0; interval_s > SampleRate::kLongestInterval_s && trials < kTrials;) {
+  double last_sent_s = 0.0;
+  std::string problem = ": no frame";
+  Trial trial;
+  for (int frames = 0, trials = 0; !problem.empty() && trials < kTrials;) {
     if (stop_requested() != 0) return Error{"interrupted"};
     // Opening the line may reset the board, which then misses the first frames of the host.
     if (steady_now_s() - last_sent_s > 0.1) {
@@ -164,22 +213,13 @@ Result<OpenedDevice> BridgeBus::open_and_identify() {
     if (verdict != ReportVerdict::position) continue;
     ++frames;
     result.measures_force = result.measures_force || !std::isnan(reading.measured_N);
-    const double now_s = steady_now_s();
-    if (++intervals == 0) {
-      first_s = now_s;
-      first_us = reading.time_us;
-    }
-    // The larger of the device's time and the time of arrival counts: the first frames may have waited in a queue, and
-    // a device's clock may stand still.
-    const double span_s = std::max(1e-6 * static_cast<std::int32_t>(reading.time_us - first_us), now_s - first_s);
-    if (intervals < kIntervals || span_s < kTrial_s) continue;
-    interval_s = std::min(interval_s, span_s / intervals);
-    intervals = -1;
+    trial.take(reading, steady_now_s());
+    if (!trial.complete()) continue;
+    problem = std::exchange(trial, {}).problem();
     ++trials;
   }
-  if (interval_s > SampleRate::kLongestInterval_s) return too_slow(info_.path, interval_s);
+  if (!problem.empty()) return Error{info_.path + problem};
   result.info.product = result.measures_force ? "measures force" : "measures no force";
-  if (target_.starts_with("remote-")) result.info.product += ", on a network, which adds delay";
   result.connection = std::move(*opened);
   return Result<OpenedDevice>(std::move(result));
 }

@@ -56,8 +56,9 @@ class BridgeBus final : public DeviceBus {
   Result<std::unique_ptr<DeviceConnection>> open(const DeviceNode&) override;
 
   // Opens the device and measures the rate of its first frames. Waits for them up to 4 s (20 s for a program), because
-  // a board that resets when its port is opened takes two seconds. Errors: those of ByteStream; no or too few frames,
-  // fewer than 100 a second, another version, a program that ended; interrupted.
+  // a board that resets when its port is opened takes two seconds. Errors: those of ByteStream; no frames, fewer than
+  // 100 or more than 10000 a second, a clock that does not count us, a sequence that does not count, another version, a
+  // program that ended; interrupted.
   Result<OpenedDevice> open_and_identify();
 
  private:

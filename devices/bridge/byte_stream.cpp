@@ -25,6 +25,7 @@
 #include <string_view>
 #include <utility>
 
+#include "engine/base/text.h"
 #include "engine/live/pacer.h"
 
 namespace palpate {
@@ -45,13 +46,16 @@ constexpr double kEnd_s = 0.5, kClosed_s = 0.1;
 
 using Opened = Result<std::unique_ptr<ByteStream>>;
 
+constexpr std::size_t kLongestName = 400;  // of a target, in messages
+
 Error wrong(const std::string& text, const std::string& expected) {
-  return Error{"--device bridge:" + text + ": expected " + expected + " (devices/README.md#bridge)"};
+  return Error{"--device bridge:" + printable(text, kLongestName) + ": expected " + expected +
+               " (devices/README.md#bridge)"};
 }
 
 // Of the last system call.
 Error failure(const std::string& what, const std::string& advice) {
-  return Error{what + ": " + std::strerror(errno) + "; " + advice};
+  return Error{printable(what, kLongestName) + ": " + std::strerror(errno) + "; " + advice};
 }
 
 // `rest`, here and below: the target without its prefix in kLines.
@@ -76,8 +80,10 @@ Opened open_serial(const std::string& rest) {
                              : "check that the device is plugged in; ls /dev/tty* lists the ports");
   }
   auto stream = std::make_unique<ByteStream>(line);
-  if (flock(line, LOCK_EX | LOCK_NB) != 0) return Error{path + ": in use by another program; close it"};
-  if (tcgetattr(line, &settings) != 0) return Error{path + ": is not a serial line; name a tty"};
+  if (flock(line, LOCK_EX | LOCK_NB) != 0)
+    return Error{printable(path, kLongestName) + ": in use by another program; close it"};
+  if (tcgetattr(line, &settings) != 0)
+    return Error{printable(path, kLongestName) + ": is not a serial line; name a tty"};
   cfmakeraw(&settings);
   settings.c_cflag |= CLOCAL | CREAD;
   settings.c_cflag &= ~static_cast<tcflag_t>(CRTSCTS | HUPCL);  // so that closing the line does not reset the board
@@ -106,7 +112,7 @@ Opened connected(const std::string& name, const sockaddr* address, socklen_t siz
     if (poll(&ready, 1, ByteStream::kConnect_ms) == 1) getsockopt(socket, SOL_SOCKET, SO_ERROR, &problem, &length);
   }
   if (problem == 0) return Opened(std::move(stream));
-  return Error{name + ": " + std::strerror(problem) + "; start the device's program first"};
+  return Error{printable(name, kLongestName) + ": " + std::strerror(problem) + "; start the device's program first"};
 }
 
 Opened open_unix(const std::string& path) {
@@ -126,7 +132,9 @@ bool is_loopback(const sockaddr* address) {
          IN6_IS_ADDR_LOOPBACK(&reinterpret_cast<const sockaddr_in6*>(address)->sin6_addr) != 0;
 }
 
-Opened open_tcp(const std::string& name, bool remote) {
+bool remote_allowed = false;
+
+Opened open_tcp(const std::string& name) {
   const std::size_t colon = std::min(name.rfind(':'), name.size());
   const std::string host = name.substr(0, colon);
   const int port = whole_number(name.substr(std::min(colon + 1, name.size())), 65535);
@@ -135,11 +143,12 @@ Opened open_tcp(const std::string& name, bool remote) {
   hints.ai_socktype = SOCK_STREAM;
   addrinfo* list = nullptr;
   const int looked_up = getaddrinfo(host.c_str(), std::to_string(port).c_str(), &hints, &list);
-  if (looked_up != 0) return Error{name + ": " + gai_strerror(looked_up) + "; check the host's name"};
+  if (looked_up != 0)
+    return Error{printable(name, kLongestName) + ": " + gai_strerror(looked_up) + "; check the host's name"};
   const std::unique_ptr<addrinfo, decltype(&freeaddrinfo)> owner(list, freeaddrinfo);
-  Opened stream = Error{name + ": has no address; check the host's name"};
+  Opened stream = Error{printable(name, kLongestName) + ": has no address; check the host's name"};
   for (const addrinfo* one = list; one != nullptr && !stream; one = one->ai_next) {
-    if (!remote && !is_loopback(one->ai_addr)) {
+    if (!remote_allowed && !is_loopback(one->ai_addr)) {
       return Error{name +
                    ": is another computer, so others on the network could move the device; use an SSH tunnel to "
                    "127.0.0.1, or allow it with --bridge-remote"};
@@ -177,6 +186,7 @@ Opened open_command(const std::string& command) {
   const pid_t child = fork();
   if (child == 0) run_child(ends[1], command.c_str(), parent);
   ::close(ends[1]);
+  if (child > 0) setpgid(child, child);  // here as well, because kill(-child) may come before the child has run
   auto stream = std::make_unique<ByteStream>(ends[0], std::max(0, child));
   if (child < 0) return failure(command, "close other programs");
   fcntl(ends[0], F_SETFL, O_NONBLOCK);
@@ -188,21 +198,16 @@ struct Line {
   std::string_view prefix;
   Opened (*open)(const std::string& rest);
 };
-constexpr std::array<Line, 5> kLines = {{
+constexpr std::array<Line, 4> kLines = {{
     {"/", open_serial},
     {"unix:", open_unix},
-    {"tcp:", [](const std::string& name) { return open_tcp(name, false); }},
-    {"remote-tcp:", [](const std::string& name) { return open_tcp(name, true); }},
+    {"tcp:", open_tcp},
     {"exec:", open_command},
 }};
 
 }  // namespace
 
-std::string with_remote_bridge(std::string device) {
-  constexpr std::string_view kBridge = "bridge:";
-  if (device.rfind("bridge:tcp:", 0) == 0) device.insert(kBridge.size(), "remote-");
-  return device;
-}
+void allow_remote_bridges() noexcept { remote_allowed = true; }
 
 Result<std::unique_ptr<ByteStream>> ByteStream::open(const std::string& target) {
   const auto line =

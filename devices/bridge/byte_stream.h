@@ -12,15 +12,14 @@
 
 namespace palpate {
 
-// Applies --bridge-remote to the value of --device: bridge:tcp: becomes bridge:remote-tcp:, which may name another
-// computer. Other values are unchanged.
-std::string with_remote_bridge(std::string device);
+// The option --bridge-remote, before a device is opened: bridge:tcp: may name another computer, in this process.
+void allow_remote_bridges() noexcept;
 
 class ByteStream {
  public:
   static constexpr int kConnect_ms = 3000;
 
-  // `target`: "/dev/TTY[,BAUD]", "unix:PATH", "[remote-]tcp:HOST:PORT", "exec:COMMAND". The default is 1 Mbaud. Errors:
+  // `target`: "/dev/TTY[,BAUD]", "unix:PATH", "tcp:HOST:PORT", "exec:COMMAND". The default is 1 Mbaud. Errors:
   // another form; it cannot be opened, with the reason and what to do.
   static Result<std::unique_ptr<ByteStream>> open(const std::string& target);
   // Owns the descriptor and the child process; `child`: its id, 0 for none.

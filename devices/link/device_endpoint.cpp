@@ -29,7 +29,6 @@ void DeviceEndpoint::unplugged() noexcept {
 
 void DeviceEndpoint::publish_state() noexcept {
   MonitorState state = monitor_.state();
-  state.health.round_trip_s = round_trip_s_;
   if (!connected_) state.health.faults = device_fault::kUnplugged;
   state_.write(state);
 }
@@ -40,27 +39,39 @@ void DeviceEndpoint::report_arrived(const std::uint8_t* bytes, std::size_t size,
   DeviceReading reading;
   const ReportVerdict verdict = calibration_.protocol->decode(bytes, size, reading);
   monitor_.update(verdict, reading, now_s, commanded_N_.load(std::memory_order_relaxed));
-  const MonitorState& state = monitor_.state();
-  if (state.samples != before.samples) publish_sample();
-  if (state.confirmed != before.confirmed) {
-    const double sent_s = sent_at_s_[state.confirmed % sent_at_s_.size()].load(std::memory_order_relaxed);
-    if (sent_s > 0.0) round_trip_s_ = now_s - sent_s;
-  }
+  if (monitor_.state().samples != before.samples) publish_sample(reading, now_s);
   publish_state();
 }
 
-void DeviceEndpoint::publish_sample() noexcept {
+// By the confirmed command, in the device's own clock: exact, however samples and commands were delayed, held or
+// grouped. A new command may have replaced the one before just before this sample. Without confirmations, the force of
+// a sample acts at most until the command that follows the next one.
+ForceAge DeviceEndpoint::force_age(const DeviceReading& reading, double now_s) noexcept {
+  if (!calibration_.protocol->confirms) return {kUsb_s, now_s - std::exchange(arrived_s_, now_s) + kUsb_s + kWaits_s};
+  const std::uint64_t sent = sent_[reading.confirmed % sent_.size()].load(std::memory_order_relaxed);
+  const bool known = (sent >> 32) == ((kFromSample >> 32) | (reading.confirmed & 0xFFFF));
+  const auto from_us = static_cast<std::uint32_t>(sent);
+  const std::uint32_t before_us = std::exchange(acted_from_us_, from_us);
+  constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+  if (!std::exchange(acted_known_, known) || !known) return {kUnknown, kUnknown};
+  const auto since_s = [&](std::uint32_t us) { return 1e-6 * static_cast<std::int32_t>(reading.time_us - us); };
+  return {since_s(from_us), since_s(before_us)};
+}
+
+void DeviceEndpoint::publish_sample(const DeviceReading& reading, double now_s) noexcept {
   const MonitorState& state = monitor_.state();
-  accepted_.store(state.samples, std::memory_order_relaxed);
+  const ForceAge age = force_age(reading, now_s);
+  if (age.least_s > kWriteStalled_s) monitor_.fault(device_fault::kWriteStalled, now_s);
   if (state.lost != 0 || !state.health.may_push()) return;
   DeviceSample sample;
+  sample.force_age = age;
   sample.tool.time_s = state.sample_time_s;
   const double counts = static_cast<double>(state.counts) - state.zero_counts;
   sample.tool.position_m =
       calibration_.rest_position_m + calibration_.direction * counts / calibration_.counts_per_metre;
   sample.measured_N = state.measured_N;
   sample.restart = state.streams != streams_published_;
-  if (samples_.push(sample)) streams_published_ = state.streams;
+  if (samples_.push({sample, state.samples, reading.time_us})) streams_published_ = state.streams;
 }
 
 OutReports DeviceEndpoint::next(double now_s) noexcept {
@@ -70,20 +81,21 @@ OutReports DeviceEndpoint::next(double now_s) noexcept {
     last_heartbeat_ = command.heartbeat;
     last_beat_s_ = now_s;
   }
-  const std::uint64_t samples = accepted_.load(std::memory_order_relaxed);
-  const bool due = calibration_.protocol->timed ? samples != answered_ : fresh;
+  const bool due = !calibration_.protocol->timed || command.sample != answered_;
   const double repeat_s = calibration_.protocol->timed ? kSlowestSample_s : kRepeat_s;
   // A change to no force is sent at once.
   const bool lets_go = fresh && command.force_N == 0.0 && commanded_N_.load(std::memory_order_relaxed) != 0.0;
   if (!(due && fresh) && !lets_go && last_sent_s_ >= 0.0 && now_s - last_sent_s_ < repeat_s) return {};
   last_sent_s_ = now_s;
-  answered_ = samples;
+  answered_ = command.sample;
   const bool haptics_live = now_s - last_beat_s_ < kHapticsSilent_s;
   const double peak_N = calibration_.limits.largest_N;
   const bool drives = haptics_live && std::isfinite(command.force_N);
   const double safe_N = drives ? std::clamp(command.force_N, -peak_N, peak_N) : 0.0;
   commanded_N_.store(safe_N, std::memory_order_relaxed);
-  sent_at_s_[++sequence_ % sent_at_s_.size()].store(now_s, std::memory_order_relaxed);
+  ++sequence_;
+  const std::uint64_t from = (command.sample > 0 ? kFromSample : 0U) | std::uint64_t{sequence_ & 0xFFFF} << 32;
+  sent_[sequence_ % sent_.size()].store(from | command.from_us, std::memory_order_relaxed);
   return calibration_.protocol->encode_command(
       {.sequence = sequence_,
        .heartbeat = last_heartbeat_,
@@ -94,20 +106,21 @@ OutReports DeviceEndpoint::next(double now_s) noexcept {
 // After a pause of the haptics thread, skips old samples; `restart` is set if any of them began a new stream.
 bool DeviceEndpoint::read(double, DeviceSample& sample) noexcept {
   bool restart = false;
-  DeviceSample next;
+  TimedSample next;
   do {
     if (!samples_.pop(next)) return false;
-    restart = restart || next.restart;
+    restart = restart || next.sample.restart;
   } while (samples_.size() >= static_cast<std::size_t>(kMaxSamplesPerTick));
-  sample = next;
+  sample = next.sample;
   sample.restart = restart;
-  began_ = true;
+  next_command_.sample = next.number;
+  next_command_.from_us = next.time_us;
   return true;
 }
 
 void DeviceEndpoint::write(double force_N) noexcept {
   // Before the first sample, the force is 0 in any case. Later, the limiter ramps it down where necessary.
-  next_command_.force_N = began_ ? force_N : 0.0;
+  next_command_.force_N = next_command_.sample > 0 ? force_N : 0.0;
   ++next_command_.heartbeat;
   command_.write(next_command_);
 }
@@ -122,7 +135,6 @@ ForceLimits DeviceEndpoint::limits() const noexcept {
 bool DeviceEndpoint::stalled(const MonitorState& state, double now_s) const noexcept {
   if (now_s - last_written_s_.load(std::memory_order_relaxed) > kWriteStalled_s) return true;
   if (!calibration_.protocol->confirms) return false;
-  if (state.health.round_trip_s > kWriteStalled_s) return true;
   const double confirmed_s = std::max(state.confirmed_at_s, connected_at_s_.load(std::memory_order_relaxed));
   return now_s - confirmed_s > kWriteStalled_s;
 }
@@ -138,11 +150,6 @@ DeviceHealth DeviceEndpoint::health(double now_s) noexcept {
   }
   health.faults |= state.lost;
   if (now_s < state.transient_until_s) health.faults |= state.transient;
-  // A round trip includes the wait for the next sample, at least half the time for which a force is constant. A
-  // repeated command shortens the wait of its confirmation, but not the time for which the force is constant. A device
-  // without confirmations is on USB, which takes a frame of 1 ms in each direction.
-  const double round_trip_s = std::max(health.round_trip_s > 0.0 ? health.round_trip_s : 2e-3, health.interval_s);
-  health.lag_s = kWaits_s + round_trip_s + 0.5 * std::max(0.0, 1e-3 - health.interval_s);
   return health;
 }
 

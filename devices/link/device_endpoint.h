@@ -29,9 +29,10 @@ class DeviceEndpoint : public Device, public LinkListener {
   static constexpr double kWriteStalled_s = 0.05;
   // An unchanged command is repeated after this time.
   static constexpr double kRepeat_s = 0.005;
-  // Part of the lag: half a tick until a sample is used and half a period of the writer until the force is sent.
-  static constexpr double kWaits_s = 0.75e-3;
-  // A device with timed reports gets one command per sample, but at least one in this time.
+  // A device that confirms nothing is on USB: a frame of 1 ms in each direction; and the longest waits for the tick and
+  // for the writer.
+  static constexpr double kUsb_s = 2e-3, kWaits_s = 1.5e-3;
+  // A device with timed reports gets one command per sample that the tick has used, but at least one in this time.
   static constexpr double kSlowestSample_s = 0.01;
 
   explicit DeviceEndpoint(const DeviceCalibration& calibration, std::string name = "hid") noexcept;
@@ -57,13 +58,21 @@ class DeviceEndpoint : public Device, public LinkListener {
  private:
   struct Command {
     double force_N = 0.0;
+    std::uint64_t sample = 0;   // number of the sample from which the force was computed; 0: none
+    std::uint32_t from_us = 0;  // its time, device clock
     std::uint16_t heartbeat = 0;
+  };
+  struct TimedSample {
+    DeviceSample sample;
+    std::uint64_t number = 0;
+    std::uint32_t time_us = 0;  // device clock
   };
 
   bool stalled(const MonitorState& state, double now_s) const noexcept;
   // Reader thread.
   void publish_state() noexcept;
-  void publish_sample() noexcept;
+  void publish_sample(const DeviceReading& reading, double now_s) noexcept;
+  ForceAge force_age(const DeviceReading& reading, double now_s) noexcept;
 
   DeviceCalibration calibration_;
   std::string name_;
@@ -71,25 +80,27 @@ class DeviceEndpoint : public Device, public LinkListener {
   std::atomic<double> commanded_N_{0.0};  // last command
   std::atomic<double> last_written_s_{0.0};
   std::atomic<double> connected_at_s_{0.0};
-  std::atomic<std::uint64_t> accepted_{0};            // number of accepted samples
-  std::array<std::atomic<double>, 256> sent_at_s_{};  // by sequence modulo 256
-  static_assert(std::atomic<double>::is_always_lock_free);
+  // For the last commands, by sequence modulo 256: the low half of the sequence, kFromSample, and Command::from_us.
+  std::array<std::atomic<std::uint64_t>, 256> sent_{};
+  static constexpr std::uint64_t kFromSample = std::uint64_t{1} << 48;
+  static_assert(std::atomic<double>::is_always_lock_free && std::atomic<std::uint64_t>::is_always_lock_free);
   TripleBuffer<MonitorState> state_;
-  SpscRing<DeviceSample, 256> samples_;
+  SpscRing<TimedSample, 256> samples_;
   TripleBuffer<Command> command_;
   // Reader thread only.
   StreamMonitor monitor_;
-  double round_trip_s_ = std::numeric_limits<double>::quiet_NaN();
+  std::uint32_t acted_from_us_ = 0;  // device time of the sample of the force that acted at the newest sample
+  bool acted_known_ = false;
+  double arrived_s_ = std::numeric_limits<double>::quiet_NaN();  // the newest sample
   bool connected_ = false;
   std::uint32_t streams_published_ = 0;
   // Writer thread only.
   std::uint32_t sequence_ = 0;
   std::uint16_t last_heartbeat_ = 0;
   double last_beat_s_ = 0.0, last_sent_s_ = -1.0;
-  std::uint64_t answered_ = 0;  // accepted samples at the last command
+  std::uint64_t answered_ = 0;  // sample of the last command
   // Haptics thread only.
   Command next_command_;
-  bool began_ = false;  // a sample was read, so that the position is known
 };
 
 class LinkedDevice final : public DeviceEndpoint {

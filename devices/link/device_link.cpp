@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "engine/base/signals.h"
+#include "engine/base/text.h"
 #include "engine/live/pacer.h"
 
 namespace palpate {
@@ -93,7 +94,8 @@ DeviceLink::DeviceLink(DeviceBus& bus, LinkListener& listener, OpenedDevice open
 DeviceLink::~DeviceLink() { stop(); }
 
 std::string DeviceLink::description() const {
-  return std::string(protocol_.description) + ": " + info_.product + ", " + info_.path + "; tested " + kTestedOn;
+  return std::string(protocol_.description) + ": " + printable(info_.product, 80) + ", " + info_.path + "; tested " +
+         kTestedOn;
 }
 
 std::shared_ptr<DeviceConnection> DeviceLink::connection() noexcept {

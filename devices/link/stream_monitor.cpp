@@ -18,9 +18,12 @@ StreamMonitor::StreamMonitor(const DeviceCalibration& calibration) noexcept
 }
 
 void StreamMonitor::fault(std::uint32_t bit, double now_s) noexcept {
-  if (now_s >= state_.transient_until_s) state_.transient = 0;
+  if (now_s >= state_.transient_until_s) {
+    state_.transient = 0;
+    hold_s_ = now_s < state_.transient_until_s + kOften_s ? kOften_s : kHold_s;
+  }
   state_.transient |= bit;
-  state_.transient_until_s = now_s + kHold_s;
+  state_.transient_until_s = now_s + hold_s_;
 }
 
 void StreamMonitor::lose(std::uint32_t bit, double now_s) noexcept {
@@ -107,11 +110,17 @@ void StreamMonitor::move(const DeviceReading& reading, double now_s) noexcept {
   state_.counts += step;
 }
 
+// No hand keeps a tool within a count for seconds against kFirm_N, nor while a smaller force changes; a small constant
+// force is no evidence.
 void StreamMonitor::watch_stuck(double now_s, double force_N) noexcept {
-  const bool stuck = now_s - still_since_s_ > calibration_.stuck_after_s;
   // For a device without zeroing, only motion ends the fault: a small force does not.
-  if (!(std::abs(force_N) >= kPushing_N) && !(stuck && protocol_.absolute)) still_since_s_ = now_s;
-  if (now_s - still_since_s_ > calibration_.stuck_after_s) lose(device_fault::kStuck, now_s);
+  if (!(std::abs(force_N) >= kPushing_N) && !(stuck_ && protocol_.absolute)) still_since_s_ = now_s;
+  if (still_since_s_ == now_s) least_N_ = most_N_ = force_N;
+  least_N_ = std::min(least_N_, force_N);
+  most_N_ = std::max(most_N_, force_N);
+  const bool pushed = std::abs(force_N) >= kFirm_N || most_N_ - least_N_ >= kPushing_N;
+  stuck_ = now_s - still_since_s_ > calibration_.stuck_after_s && (stuck_ || pushed);
+  if (stuck_) lose(device_fault::kStuck, now_s);
 }
 
 void StreamMonitor::watch_zeroing(double now_s) noexcept {

@@ -7,14 +7,15 @@
 //   untimed: four reports within kTogether_s waited in a queue            kBurst
 //   a step is faster than the device or a hand can move                   kJump
 //   sequence numbers or the device's time start again                     kReset
-//   no count changes within `stuck_after_s` at kPushing_N or more         kStuck
+//   no count changes within `stuck_after_s` at kPushing_N or more,
+//     although the force is kFirm_N or changes by kPushing_N              kStuck
 //   the device's watchdog has stopped it                                  kWriteStalled
 //   the device reports a fault                                            kOwn
 //   fewer than 100 samples a second                                       kSlow
 // Missing reports are detected by DeviceEndpoint::health; a corrupt report is a missing one. A fault that does not
-// affect the position lasts kHold_s after its last occurrence. A fault that loses the position of an incremental
-// encoder (kJump, kReset, kStuck) lasts until the device is zeroed. A reading that is out of order or late is not used.
-// Thread guarantee: one thread; wait-free, never throws.
+// affect the position lasts kHold_s after its last occurrence, one that comes often kOften_s. A fault that loses the
+// position of an incremental encoder (kJump, kReset, kStuck) lasts until the device is zeroed. A reading that is out of
+// order or late is not used. Thread guarantee: one thread; wait-free, never throws.
 #pragma once
 
 #include <algorithm>
@@ -126,7 +127,10 @@ struct MonitorState {
 
 class StreamMonitor {
  public:
-  static constexpr double kHold_s = 0.1, kTogether_s = 0.5e-3, kPushing_N = 0.2;
+  static constexpr double kHold_s = 0.1, kTogether_s = 0.5e-3, kPushing_N = 0.2, kFirm_N = 1.0;
+  // A fault that comes again within this time lasts as long, so that a line at its limit does not switch the force on
+  // and off.
+  static constexpr double kOften_s = 2.0;
   // Largest acceleration: 50 N of hand and motor together on 50 g. A motion of 5 mm within 1 ms from rest is therefore
   // a fault even where fastest_m_per_s allows it.
   static constexpr double kQuickest_m_per_s2 = 1000.0;
@@ -146,6 +150,8 @@ class StreamMonitor {
 
   // Takes a decoded report that arrived at `now_s` (non-decreasing). `force_N`: the commanded force.
   void update(ReportVerdict verdict, const DeviceReading& reading, double now_s, double force_N) noexcept;
+  // Another fault of the device.
+  void fault(std::uint32_t bit, double now_s) noexcept;
   // The device was unplugged; the next report begins a new stream.
   void unplugged() noexcept;
   void start_zeroing() noexcept;
@@ -153,7 +159,6 @@ class StreamMonitor {
   const MonitorState& state() const noexcept { return state_; }
 
  private:
-  void fault(std::uint32_t bit, double now_s) noexcept;
   void lose(std::uint32_t bit, double now_s) noexcept;
   // Whether the reading is used. They set read_time_s_; a new stream ends connected_.
   bool accept_untimed(double now_s) noexcept;
@@ -175,8 +180,11 @@ class StreamMonitor {
   double read_time_s_ = 0.0;                   // of the present reading
   double speed_ = 0.0;                         // counts per second, of the last step
   double arrivals_s_[3] = {-1e9, -1e9, -1e9};  // of the last three untimed readings, newest first
-  double still_since_s_ = 0.0;
+  double still_since_s_ = 0.0;                 // the last change of a count
+  double least_N_ = 0.0, most_N_ = 0.0;        // of the force since then
+  bool stuck_ = false;
   bool late_ = false;
+  double hold_s_ = kHold_s;        // of the present fault
   double zeroing_since_s_ = -1.0;  // below 0: not begun
   std::int64_t zeroing_from_ = 0, zeroing_to_ = 0;
 };

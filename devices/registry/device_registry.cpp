@@ -115,7 +115,7 @@ MadeDevice open_device(const std::string& name, const DeviceRequest& request, co
     if (const Status status = (*device)->open(); !status) return status.error();
     return device;
   }
-  return Error{"unknown device \"" + name + "\", expected one of: " + joined(names) + " (palpate devices explains)"};
+  return Error{"unknown device \"" + printable(name) + "\", expected one of: " + joined(names) + " (palpate devices explains)"};
 }
 
 }  // namespace palpate

@@ -37,11 +37,6 @@ struct DeviceHealth {
   // sample that it read. Before the first sample there is no force.
   double sample_age_s = std::numeric_limits<double>::infinity();
   double interval_s = 0.0;  // recent interval between samples; 0: not known
-  // Time from a command to the report that confirms it; NaN: the device does not confirm.
-  double round_trip_s = std::numeric_limits<double>::quiet_NaN();
-  // Lag of the force behind the motion: transport, waiting times, half the time for which a force is held. NaN: the
-  // device reads and writes in the tick itself.
-  double lag_s = std::numeric_limits<double>::quiet_NaN();
 
   // Whether a force is permitted.
   bool may_push() const noexcept { return faults == 0 && (zeroing == Zeroing::not_needed || zeroing == Zeroing::done); }
@@ -57,10 +52,17 @@ inline std::string zeroing_words(const DeviceHealth& health) {
 
 inline constexpr double kNoForce = std::numeric_limits<double>::quiet_NaN();
 
+// The age of the force that acted between the last sample and this one: the time since the sample from which that force
+// was computed. 0: the device is read and written in the tick itself; NaN: not known.
+struct ForceAge {
+  double least_s = 0.0, largest_s = 0.0;
+};
+
 // One sample of a device.
 struct DeviceSample {
   ToolSample tool;
   double measured_N = kNoForce;  // the reading of a force sensor; NaN: none
+  ForceAge force_age;
   // A new stream begins (a recording starts again): its time may be earlier than that of the last sample, and the
   // filters are reset.
   bool restart = false;
@@ -114,22 +116,28 @@ class ReplayControl {
 // Thread guarantee: one thread at a time; wait-free.
 class SampleRate {
  public:
-  // 100 Hz with 5 % for the error of a clock and lost samples.
-  static constexpr double kLongestInterval_s = 0.0105;
+  // 100 Hz with 4 % for the error of a clock and lost samples.
+  static constexpr double kLongestInterval_s = 0.0104;
 
   void add(double step_s) noexcept {
     if (count_ < kSlowSamples) ++count_;
     interval_s_ += (step_s - interval_s_) / std::min(count_, kFastSamples);
-    slow_s_ += (step_s - slow_s_) / count_;
+    // One pause is no rate.
+    slow_s_ += (std::min(step_s, 2.0 * kLongestInterval_s) - slow_s_) / count_;
+    fast_s_ = slow_s_ < kFastAgain_s ? fast_s_ + step_s : 0.0;
+    too_slow_ = count_ >= kFewest && (too_slow_ ? fast_s_ < kAgainAfter_s : slow_s_ > kLongestInterval_s);
   }
   // The mean of about ten samples, s; 0 before the first interval.
   double interval_s() const noexcept { return interval_s_; }
-  // By the mean of about fifty samples, so that a few lost ones do not count.
-  bool too_slow() const noexcept { return count_ >= kFewest && slow_s_ > kLongestInterval_s; }
+  // By the mean of about fifty samples, so that a few lost ones do not count; until it was above 105 Hz for a second,
+  // so that a rate near the limit does not switch the force on and off.
+  bool too_slow() const noexcept { return too_slow_; }
 
  private:
   static constexpr double kFewest = 8.0, kFastSamples = 10.0, kSlowSamples = 50.0;
-  double count_ = 0.0, interval_s_ = 0.0, slow_s_ = 0.0;
+  static constexpr double kFastAgain_s = 1.0 / 105.0, kAgainAfter_s = 1.0;
+  double count_ = 0.0, interval_s_ = 0.0, slow_s_ = 0.0, fast_s_ = 0.0;
+  bool too_slow_ = false;
 };
 
 // The refusal of a device at its start. Slow side.

@@ -1,5 +1,7 @@
 #include "engine/live/force_guard.h"
 
+#include <utility>
+
 namespace palpate {
 namespace {
 
@@ -32,12 +34,12 @@ double PassivityController::energy_when_passed(double depth_m) noexcept {
   return deeper.energy_J;
 }
 
-// The mean since the last sample of the force that was written a transport and a hold ago. Assuming too large a lag
+// The mean since the last sample of the force that was written a delay ago. Assuming too large a lag
 // makes the debt during unloading larger, never smaller.
-double PassivityController::arrived_N(const Tool& tool, double lag_s, double written_N, double tick_s) noexcept {
+double PassivityController::arrived_N(const Tool& tool, const Timing& timing, double written_N) noexcept {
   written_N_[ticks_ % kMostUnderWay] = written_N;
   const double most = static_cast<double>(std::min(ticks_, kMostUnderWay - 1));
-  const auto ago = static_cast<std::size_t>(std::clamp(std::round(lag_s / tick_s), 0.0, most));
+  const auto ago = static_cast<std::size_t>(std::clamp(std::round(timing.delay_s / timing.tick_s), 0.0, most));
   arrived_N_ += written_N_[(ticks_ - ago) % kMostUnderWay];
   ++ticks_;
   ++arrivals_;
@@ -49,9 +51,11 @@ double PassivityController::arrived_N(const Tool& tool, double lag_s, double wri
   return mean_N;
 }
 
-double PassivityController::apply(double commanded_N, const Tool& tool, const Loop& loop, double written_N,
-                                  double step_s) noexcept {
-  const double acted_N = arrived_N(tool, loop.transport_s + loop.hold_s, written_N, loop.tick_s);
+double PassivityController::apply(double commanded_N, const Tool& tool, const Timing& timing, double damping_Ns_per_m,
+                                  double written_N) noexcept {
+  const double acted_N = arrived_N(tool, timing, written_N), step_s = timing.step_s;
+  since_sample_s_ += step_s;
+  if (tool.fresh) hold_s_ = std::exchange(since_sample_s_, 0.0);
   if (!tool.in_contact || !std::isfinite(tool.position_m)) {
     begin_at(0.0);
     return reduced(commanded_N, 0.0);
@@ -77,9 +81,8 @@ double PassivityController::apply(double commanded_N, const Tool& tool, const Lo
   depth_m_ = depth_m;
   const double out_m_per_s = -tool.velocity_m_per_s;
   if (!(debt_J_ > 0.0) || !(out_m_per_s > 0.0) || !(step_s > 0.0)) return reduced(commanded_N, 0.0);
-  const double damping_Ns_per_m =
-      std::min(loop.damping_Ns_per_m, debt_J_ / (out_m_per_s * out_m_per_s * std::max(step_s, loop.hold_s)));
-  return reduced(commanded_N, damping_Ns_per_m * out_m_per_s);
+  const double needed_Ns_per_m = debt_J_ / (out_m_per_s * out_m_per_s * std::max(timing.tick_s, hold_s_));
+  return reduced(commanded_N, std::min(damping_Ns_per_m, needed_Ns_per_m) * out_m_per_s);
 }
 
 double PassivityController::reduced(double commanded_N, double reduction_N) noexcept {

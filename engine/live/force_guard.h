@@ -2,42 +2,34 @@
 // the scale within the stability limit, then the passivity controller. The live loop runs all of them, the library
 // (models/library) those of ForceGuard.
 //
-// Stability limit. A force that lags the motion by T (transport, waiting times, half the time for which it is held) is
-// a spring K with the damping -K T (Colgate & Schenkel 1997; with transport: Diolaiti et al. 2006). K T <= b + c B,
-// where
-//   b  damping of the lightest hand
-//   B  largest rendered damping, m / (2 T): it lags, too, and is unstable on a mass m above pi/2 m / T
-//   c  share of B that the passivity controller provides, 0.22: measured. Every simulated hand (50 to 300 g, lags to
-//      10 ms, 600 to 7000 N/m) swings by at most 0.12 mm with encoder steps to 10 um, and by 0.35 mm with 30 um
-//      (tests/accuracy/closed_loop_late_test.cpp). A controller that always damps could provide 1.1, because
-//      m x''(t) + B x'(t - T) + K x(t - T) = 0 is unstable for K > 0.55 m / T^2 with any B. c decreases with the
-//      encoder step, because the controller has a play of one step.
+// Stability limit: K T <= b + c B, B = m / (2 T), for a spring K whose force lags the motion by T (LoopDelay). It acts
+// with the damping -K T (Colgate & Schenkel 1997; with transport: Diolaiti et al. 2006). b is the damping of a hand, B
+// the largest damping that may be rendered: it lags, too, and is unstable on a mass m above pi/2 m / T. c is the share
+// of B that the passivity controller provides. b and c are those of the simulation in
+// tests/accuracy/closed_loop_link_test.cpp: over rates, groups, delays and jitter, the lightest hand (50 g, 2.2 N s/m)
+// keeps still within 0.35 mm up to K T = 2.1 N s/m + 0.46 B, with encoder steps up to 30 um; the limit is 0.85 of that.
+// A coarser encoder is not covered: the controller has a play of one step.
 // B limits the sum of the damping of model and user, and that of user and controller.
 //
-// Passivity controller (Hannaford & Ryu 2002; Ryu et al. 2004 for a reference that follows the depth): keeps the force
-// from returning more energy than it received.
-//
-//   force |        loading ___/
-//         |           ___/_/ unloading
-//         |     _____/_/
-//         |____/_/_________ depth
-//
-// In a press and back the tool puts in the area below the upper path and gets back the one below the lower. A late
-// force is too small on the way in and too large on the way out, so that the paths cross and the loop gains energy.
-//
-// Observer: E += F dx, the energy put in since contact, F the force that acted during dx. During loading E is stored
-// with the depth; during unloading the deficit of E from the value stored at that depth is the debt. (The usual
-// condition, E >= 0, shows a gain only after all stored energy was returned.) The observer follows the position with a
-// play (dead zone) of one encoder step, so that noise is no motion. While the tool moves out with v < 0 and there is a
-// debt, the force is reduced by min(b, debt / (v^2 T)) |v|, b the rest of the damping limit. When the active model
-// changes, the observer begins again, because E of another material is not comparable.
+// Passivity controller (Hannaford & Ryu 2002; Ryu et al. 2004 for a reference that follows the depth). A late force is
+// too small on the way in and too large on the way out, so that the loop gains energy. Observer: E += F dx, the energy
+// put in since contact, F the force that acted during dx. During loading E is stored with the depth; during unloading
+// the deficit of E from the value stored at that depth is the debt. (The usual condition, E >= 0, shows a gain only
+// after all stored energy was returned.) The observer follows the position with a play (dead zone) of one encoder step,
+// so that noise is no motion. While the tool moves out with v < 0 and there is a debt, the force is reduced by
+// min(b, debt / (v^2 T)) |v|, b the rest of B, T the time for which the force is held. When the active model changes,
+// the observer begins again, because E of another material is not comparable.
 // Thread guarantee: one thread at a time; wait-free, allocates nothing, never throws.
 #pragma once
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
+#include <limits>
+#include <utility>
 
+#include "engine/live/device.h"
 #include "engine/tick/haptics_tick.h"
 #include "engine/tick/jnd.h"
 #include "engine/tick/tool_sample.h"
@@ -105,18 +97,52 @@ struct Impedance {
   double stiffness_N_per_m = 0.0, damping_Ns_per_m = 0.0;
 };
 
+// The delay T of the loop: halfway between the least and the largest age of the force that acted in the last second.
+// Thus it includes transport, waits, and half the time for which a force is held, however samples and commands are
+// grouped. The largest age counts, not the mean, because one late group is enough to start an oscillation.
+class LoopDelay {
+ public:
+  // `time_s` does not decrease. O(1).
+  void add(const ForceAge& age, double time_s) noexcept {
+    move_to(time_s);
+    Ages& part = parts_[part_ % kParts];
+    part.least_s = std::min(part.least_s, age.least_s);
+    part.largest_s = std::max(part.largest_s, age.largest_s);
+  }
+  void move_to(double time_s) noexcept {
+    const auto part = static_cast<std::int64_t>(time_s * static_cast<double>(kParts - 1));
+    for (std::int64_t i = std::max(part_ + 1, part - kParts + 1); i <= part; ++i) parts_[i % kParts] = {};
+    part_ = std::max(part_, part);
+  }
+  // 0: nothing was added in the last second.
+  double largest_s() const noexcept { return all().largest_s; }
+  double delay_s() const noexcept {
+    const Ages ages = all();
+    return ages.largest_s > 0.0 ? 0.5 * (ages.least_s + ages.largest_s) : 0.0;
+  }
+
+ private:
+  struct Ages {
+    double least_s = std::numeric_limits<double>::infinity(), largest_s = 0.0;
+  };
+  static constexpr std::int64_t kParts = 17;  // of 1/16 s; the newest one is not complete
+  Ages all() const noexcept {
+    Ages all;
+    for (const Ages& part : parts_)
+      all = {std::min(all.least_s, part.least_s), std::max(all.largest_s, part.largest_s)};
+    return all;
+  }
+
+  std::array<Ages, kParts> parts_{};
+  std::int64_t part_ = 0;
+};
+
 class StabilityLimit {
  public:
-  static constexpr double kLightestHand_kg = 0.05;  // a finger on which a tool rests
-  // A third of critical damping on 100 N/m; relaxed fingers have half and more (Hajian & Howe 1997).
-  static constexpr double kHandDamping_Ns_per_m = 1.5;
-  static constexpr double kShareOfDamping = 0.22;  // c with a fine encoder
-  static constexpr double kCoarse_m = 30e-6;       // encoder step with c = 0: a third of the permitted swing, 0.1 mm
-
-  explicit StabilityLimit(double encoder_step_m = 0.0) noexcept
-      : share_(kShareOfDamping * std::max(0.0, 1.0 - encoder_step_m / kCoarse_m)) {}
-
-  // Follows the current lag `lag_s` with a time constant of 0.1 s where it grows and 1 s where it falls, because an
+  static constexpr double kLightestHand_kg = 0.05;      // m, a finger on which a tool rests
+  static constexpr double kHandDamping_Ns_per_m = 1.8;  // b; relaxed fingers have more (Hajian & Howe 1997)
+  static constexpr double kShareOfDamping = 0.38;       // c
+  // Follows the current delay with a time constant of 0.1 s where it grows and 2 s where it falls, because an
   // increase of stiffness during a press adds energy. The first call takes it at once; before it nothing is limited.
   void update(double lag_s, double step_s) noexcept {
     const double time_s = lag_s > lag_s_ ? kRise_s : kFall_s;
@@ -125,7 +151,9 @@ class StabilityLimit {
 
   double lag_s() const noexcept { return lag_s_; }
   double damping_Ns_per_m() const noexcept { return 0.5 * kLightestHand_kg / lag_s_; }
-  double stiffness_N_per_m() const noexcept { return (kHandDamping_Ns_per_m + share_ * damping_Ns_per_m()) / lag_s_; }
+  double stiffness_N_per_m() const noexcept {
+    return (kHandDamping_Ns_per_m + kShareOfDamping * damping_Ns_per_m()) / lag_s_;
+  }
   // The largest stable factor of a force with this impedance.
   double largest_scale(const Impedance& of) const noexcept {
     return std::min(stiffness_N_per_m() / std::max(of.stiffness_N_per_m, kNone),
@@ -133,8 +161,8 @@ class StabilityLimit {
   }
 
  private:
-  static constexpr double kRise_s = 0.1, kFall_s = 1.0, kNone = 1e-9;
-  double share_, lag_s_ = 0.0;
+  static constexpr double kRise_s = 0.1, kFall_s = 2.0, kNone = 1e-9;
+  double lag_s_ = 0.0;
 };
 
 // The scale that the user wants for the force of the active model, and additional damping:
@@ -168,18 +196,17 @@ class PassivityController {
     bool model_changing = false;  // the active model is changing
     bool fresh = true;            // a sample was read in this tick
   };
-  struct Loop {
-    double transport_s = kHapticTick_s;  // from a sample to its force; with hold_s at most 63 ms
-    double damping_Ns_per_m = 16.0;      // b
-    double hold_s = kHapticTick_s;       // T, for which a force is held: one tick, or until the next sample
-    double tick_s = kHapticTick_s;       // between two calls
+  struct Timing {
+    double step_s = 0.0;            // since the last call, 0 in the first one
+    double tick_s = kHapticTick_s;  // the usual step
+    double delay_s = 0.0;           // the least delay of the loop, for what it cannot measure itself
   };
 
-  // Once a tick, before the limiter. `written_N`: the device's force in the last tick; `step_s`: since then, 0 in the
-  // first tick. Returns at most `commanded_N`, never less than 0 if that is positive; not finite if it is not finite.
-  double apply(double commanded_N, const Tool& tool, const Loop& loop, double written_N, double step_s) noexcept;
-
-  double debt_J() const noexcept { return debt_J_; }
+  // Once a tick, before the limiter. `timing.delay_s`: from a sample to the end of its force, at most 63 ticks.
+  // `damping_Ns_per_m`: the most that it may render. `written_N`: the device's force in the last tick. Returns
+  // at most `commanded_N`, never less than 0 if that is positive; not finite if it is not finite.
+  double apply(double commanded_N, const Tool& tool, const Timing& timing, double damping_Ns_per_m,
+               double written_N) noexcept;
 
  private:
   struct Passed {
@@ -191,7 +218,7 @@ class PassivityController {
   static constexpr std::size_t kMostUnderWay = 64;
 
   void begin_at(double depth_m) noexcept;
-  double arrived_N(const Tool& tool, double transport_s, double written_N, double step_s) noexcept;
+  double arrived_N(const Tool& tool, const Timing& timing, double written_N) noexcept;
   double reduced(double commanded_N, double reduction_N) noexcept;
   void pass_inwards(double depth_m, double energy_J) noexcept;
   double energy_when_passed(double depth_m) noexcept;
@@ -207,28 +234,33 @@ class PassivityController {
   std::size_t ticks_ = 0;
   double arrived_N_ = 0.0;  // sum over the ticks since the last sample
   int arrivals_ = 0;
-  double reduction_N_ = 0.0;  // reduction in this tick
+  double hold_s_ = 0.0, since_sample_s_ = 0.0;  // between the last two samples, and since the last one
+  double reduction_N_ = 0.0;                    // reduction in this tick
 };
 
+// One thread at a time; wait-free.
 class ForceGuard {
  public:
   using Tool = PassivityController::Tool;
-  struct Timing {
-    double lag_s = 0.0;       // of the force behind the motion; NaN or smaller: that of a device read in the tick
-    double interval_s = 0.0;  // between samples
-    double step_s = 0.0;      // since the last force
-    double tick_s = kHapticTick_s;
-  };
+  using Timing = PassivityController::Timing;
 
-  explicit ForceGuard(double encoder_step_m) noexcept : stability_(encoder_step_m), passivity_(encoder_step_m) {}
+  explicit ForceGuard(double encoder_step_m) noexcept : passivity_(encoder_step_m) {}
+
+  // For every sample, before `scaled` of the same tick.
+  void acted(const ForceAge& age, double tick_s = kHapticTick_s) noexcept {
+    const double since_s = time_s_ - std::exchange(sampled_s_, time_s_);
+    // A force that is written in a tick acts from the next tick on at the latest, until the next sample is used.
+    if (age.largest_s == 0.0 && since_s > 0.0) delay_.add({tick_s, since_s + tick_s}, time_s_);
+    if (age.largest_s > 0.0) delay_.add(age, time_s_);
+  }
 
   // The force of a model of this impedance, scaled as `wanted`; the scale moves there with a time constant of 50 ms.
   // `held`: by a person, so that the stability limit applies. With the default scale the force stays bit-identical.
   double scaled(double force_N, const Impedance& model, const ForceScale& wanted, bool held, const Tool& tool,
                 const Timing& timing) noexcept {
-    // A force that is written in a tick acts from the next tick on and is held for one.
-    const double in_tick_s = 1.5 * timing.tick_s;
-    stability_.update(timing.lag_s > in_tick_s ? timing.lag_s : in_tick_s, timing.step_s);
+    time_s_ += timing.step_s;
+    delay_.move_to(time_s_);
+    stability_.update(std::max({delay_.delay_s(), 1.5 * timing.tick_s, timing.delay_s}), timing.step_s);
     const ForceScale unbounded = wanted.limited(StabilityLimit(), {});
     const ForceScale limited = held ? wanted.limited(stability_, model) : unbounded;
     share_ = limited.stiffness / unbounded.stiffness;
@@ -241,15 +273,14 @@ class ForceGuard {
 
   // After `scaled`. `written_N`: the device's last force.
   double passive(double commanded_N, const Tool& tool, const Timing& timing, double written_N) noexcept {
-    const double hold_s = std::max(timing.tick_s, timing.interval_s);
-    const PassivityController::Loop loop{std::max(0.0, stability_.lag_s() - 0.5 * hold_s),
-                                         std::max(0.0, stability_.damping_Ns_per_m() - scale_.damping_Ns_per_m), hold_s,
-                                         timing.tick_s};
-    return passivity_.apply(commanded_N, tool, loop, written_N, timing.step_s);
+    const double left_Ns_per_m = std::max(0.0, stability_.damping_Ns_per_m() - scale_.damping_Ns_per_m);
+    const Timing known{timing.step_s, timing.tick_s,
+                       std::max(delay_.largest_s(), timing.delay_s + 0.5 * timing.tick_s)};
+    return passivity_.apply(commanded_N, tool, known, left_Ns_per_m, written_N);
   }
 
   double stiffness_share() const noexcept { return share_; }  // rendered part of the wanted one; < 1: StabilityLimit
-  double lag_s() const noexcept { return stability_.lag_s(); }
+  double delay_s() const noexcept { return stability_.lag_s(); }
 
  private:
   static constexpr double kEasing_s = 0.05, kArrived = 1e-3;
@@ -258,10 +289,12 @@ class ForceGuard {
     if (std::abs(wanted - value) < kArrived) value = wanted;
   }
 
+  LoopDelay delay_;
   StabilityLimit stability_;
   ForceScale scale_;  // of the present force
   PassivityController passivity_;
-  double share_ = 1.0;
+  double share_ = 1.0, time_s_ = 0.0;
+  double sampled_s_ = std::numeric_limits<double>::infinity();  // time of the last sample; none
 };
 
 }  // namespace palpate

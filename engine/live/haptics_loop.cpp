@@ -132,11 +132,12 @@ Status write_fault_file(const std::string& path, const std::deque<LoopSnapshot>&
   if (!file) return file.error();
   file->write(
       "loop_time_s,sample_time_s,position_m,velocity_m_per_s,commanded_N,rendered_N,sample_age_s,"
-      "round_trip_s,samples,faults,device_faults,limiter_flags\n");
+      "delay_ms,samples,faults,device_faults,limiter_flags\n");
   for (const LoopSnapshot& one : ticks) {
     std::string line;
-    for (const double value : {one.loop_time_s, one.tick.time_s, one.tick.position_m, one.tick.velocity_m_per_s,
-                               one.commanded_N, one.rendered_N, one.device.sample_age_s, one.device.round_trip_s})
+    for (const double value :
+         {one.loop_time_s, one.tick.time_s, one.tick.position_m, one.tick.velocity_m_per_s, one.commanded_N,
+          one.rendered_N, one.device.sample_age_s, static_cast<double>(one.delay_ms)})
       line += shortest(value) + ",";
     line += std::to_string(one.samples) + "," + std::to_string(one.faults) + "," + std::to_string(one.device.faults) +
             "," + std::to_string(one.limiter_flags) + "\n";

@@ -70,7 +70,6 @@ LiveTick::LiveTick(Device& device, ModelSlot<LiveModels>& slot, const LiveTickSe
       mixer_(settings.jnd),
       guard_(device.sensor().encoder_step_m),
       held_(device.holder() == Holder::person),
-      passivity_on_(settings.passivity && settings.source == nullptr),
       limiter_(device.limits()),
       source_(settings.source),
       models_(std::make_unique<LiveModels>(0, device.sensor(), ForceModels{})),
@@ -113,6 +112,7 @@ void LiveTick::process_samples(double now_s) noexcept {
 
 void LiveTick::process_sample(const DeviceSample& sample) noexcept {
   ++snapshot_.samples;
+  guard_.acted(sample.force_age);
   snapshot_.restarted = snapshot_.restarted || sample.restart;
   snapshot_.measured_N = sample.measured_N;
   for (LiveModels* set : {outgoing_.get(), models_.get()}) {
@@ -150,9 +150,9 @@ double LiveTick::mix(double step_s) noexcept {
   if (outgoing_ != nullptr && !snapshot_.fading) slot_.retire(std::move(outgoing_));
   if (count == 0 && outgoing_ == nullptr) return 0.0;  // without models no damping, either
   const double scaled_N =
-      guard_.scaled(force_N, impedance(), controls_.scale, held_, tool(snapshot_.tick.in_contact), timing(step_s));
+      guard_.scaled(force_N, impedance(), controls_.scale, held_, tool(snapshot_.tick.in_contact), {.step_s = step_s});
   snapshot_.stiffness_share = static_cast<float>(guard_.stiffness_share());
-  snapshot_.lag_ms = static_cast<float>(1e3 * guard_.lag_s());
+  snapshot_.delay_ms = static_cast<float>(1e3 * guard_.delay_s());
   return scaled_N;
 }
 
@@ -171,10 +171,6 @@ ForceGuard::Tool LiveTick::tool(bool in_contact) const noexcept {
   return {tick.position_m, tick.velocity_m_per_s, in_contact, snapshot_.fading, snapshot_.samples > 0};
 }
 
-ForceGuard::Timing LiveTick::timing(double step_s) const noexcept {
-  return {snapshot_.device.lag_s, snapshot_.device.interval_s, step_s};
-}
-
 bool LiveTick::dead_man_released() const noexcept {
   if (controls_.dead_man == DeadMan::grip) return !snapshot_.device.grip_held;
   return controls_.dead_man == DeadMan::key && !(snapshot_.loop_time_s - controls_.held_s < kDeadManHold_s);
@@ -183,9 +179,9 @@ bool LiveTick::dead_man_released() const noexcept {
 void LiveTick::render(double step_s) noexcept {
   snapshot_.passive_N = snapshot_.commanded_N;
   // Off in a study, which presents forces that do not depend on the position of the tool.
-  if (passivity_on_)
+  if (source_ == nullptr)
     snapshot_.passive_N = guard_.passive(snapshot_.commanded_N, tool(snapshot_.tick.in_contact && !snapshot_.restarted),
-                                         timing(step_s), snapshot_.rendered_N);
+                                         {.step_s = step_s}, snapshot_.rendered_N);
   const DeviceHealth& device = snapshot_.device;
   if (device.faults != 0) snapshot_.faults |= loop_fault::kDeviceFault;
   snapshot_.dead_man_released = dead_man_released();

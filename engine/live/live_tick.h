@@ -103,7 +103,7 @@ struct LoopSnapshot {
   std::uint32_t limiter_flags = 0;  // force_limit
   float heat_share = 0.0F;          // ForceLimiter::heat_share
   float stiffness_share = 1.0F;     // rendered part of the wanted one; < 1: StabilityLimit
-  float lag_ms = 0.0F;              // lag of the force behind the motion
+  float delay_ms = 0.0F;            // LoopDelay
   bool dead_man_released = false;   // the dead-man switch is released: no force
   bool fading = false;              // between two models
   bool restarted = false;           // a new stream began in this tick
@@ -126,7 +126,6 @@ using RecordedRing = SpscRing<RecordedSample, kRecordedRing>;
 struct LiveTickSettings {
   JndLine jnd;
   ForceSource* source = nullptr;  // outlives the tick; null: the models. With a source, publish no sets.
-  bool passivity = true;          // false: no controller, for tests; none with a source
 };
 
 class LiveTick {
@@ -156,7 +155,6 @@ class LiveTick {
   bool dead_man_released() const noexcept;
   Impedance impedance() const noexcept;
   ForceGuard::Tool tool(bool in_contact) const noexcept;
-  ForceGuard::Timing timing(double step_s) const noexcept;
   void render(double step_s) noexcept;
 
   Device& device_;
@@ -164,7 +162,6 @@ class LiveTick {
   ForceMixer mixer_;
   ForceGuard guard_;
   bool held_;  // by a person
-  bool passivity_on_;
   ForceLimiter limiter_;
   ForceSource* source_;
   std::unique_ptr<LiveModels> models_;    // before the first published set: one without models

@@ -224,13 +224,13 @@ double render(palpate_limiter& limiter, palpate_stream& stream, double given_s) 
   const bool first = std::isinf(limiter.sample_age_s);
   limiter.sample_age_s += step_s;
   if (!first && step_s > 0.0) limiter.calls.add(std::min(step_s, kPause_s));
+  const double tick_s = limiter.calls.interval_s() > 0.0 ? limiter.calls.interval_s() : kHapticTick_s;
+  const ForceGuard::Timing timing{step_s, tick_s, limiter.lag_s};
   if (stream.accepted) {
     if (!first && limiter.sample_age_s > 0.0) limiter.samples.add(std::min(limiter.sample_age_s, kPause_s));
+    limiter.guard.acted({}, tick_s);
     limiter.sample_age_s = 0.0;
   }
-  const double interval_s = std::max(limiter.calls.interval_s(), limiter.samples.interval_s());
-  const double tick_s = limiter.calls.interval_s() > 0.0 ? limiter.calls.interval_s() : kHapticTick_s;
-  const ForceGuard::Timing timing{std::max(limiter.lag_s, 1.5 * interval_s), interval_s, step_s, tick_s};
   const bool in_contact = stream.tick().features_of(0).in_contact && !std::exchange(stream.restarted, false);
   const ForceGuard::Tool tool{tick.position_m, tick.velocity_m_per_s, in_contact, false, stream.accepted};
   const double scaled_N = limiter.guard.scaled(tick.force_N[0], stream.impedance, {}, true, tool, timing);

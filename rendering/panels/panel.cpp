@@ -179,11 +179,9 @@ std::string device_line(const HealthView& health) {
   if (!real && device.faults == 0 && !softened) return {};
   std::string line = health.device_name + text_of(": sample %.1f ms old", 1e3 * device.sample_age_s);
   if (device.interval_s > 0.0) line += text_of(", %.0f samples a second", 1.0 / device.interval_s);
-  if (!std::isnan(device.round_trip_s)) line += text_of(", round trip %.1f ms", 1e3 * device.round_trip_s);
-  if (softened) {
-    line += text_of(", force %.1f ms late: rendered at %.0f %% of the stiffness, because more would oscillate",
-                    health.newest.lag_ms, 100.0 * stiffness_share);
-  }
+  line += text_of(", force %.1f ms late", health.newest.delay_ms);
+  if (softened)
+    line += text_of(": rendered at %.0f %% of the stiffness, because more would oscillate", 100.0 * stiffness_share);
   line += text_of(", motor heat %.0f %%", 100.0 * health.newest.heat_share);
   return line;
 }

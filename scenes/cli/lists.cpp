@@ -67,11 +67,11 @@ struct DevicesOptions {
 
 Status run_devices(const DevicesOptions& options) {
   constexpr std::string_view kBridge = "bridge:";
-  const std::string device = options.bridge_remote ? with_remote_bridge(options.test) : options.test;
   if (options.test.empty()) return print_devices();
   if (options.test.rfind(kBridge, 0) != 0)
     throw CLI::ValidationError("--test", "found \"" + options.test + "\", expected bridge:TARGET");
-  const auto result = test_bridge(device.substr(kBridge.size()));
+  if (options.bridge_remote) allow_remote_bridges();
+  const auto result = test_bridge(options.test.substr(kBridge.size()));
   if (!result) return result.error();
   std::printf("%s", result->c_str());
   return {};

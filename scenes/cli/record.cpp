@@ -139,8 +139,8 @@ Status run_record(const RecordOptions& options) {
   const StopListener listener;
   const auto scene = load_scene(options.scene);
   if (!scene) return scene.error();
-  auto device = open_device(options.bridge_remote ? with_remote_bridge(options.device) : options.device,
-                            {.calibrations = calibrations_folder()});
+  if (options.bridge_remote) allow_remote_bridges();
+  auto device = open_device(options.device, {.calibrations = calibrations_folder()});
   if (!device) return device.error();
   if (options.guide && !(*device)->measures_force()) {
     return Error{"--guide: " + options.device +

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 namespace palpate {
@@ -23,6 +24,9 @@ bool SimulatedTool::read(double now_s, DeviceSample& sample) noexcept {
   sample.tool.time_s = now_s;
   const double quantum_m = settings_.encoder_step_m;
   sample.tool.position_m = quantum_m > 0.0 ? quantum_m * std::round(position_m_ / quantum_m) : position_m_;
+  sample.force_age = {kStep_s * static_cast<double>(step_ - acting_.sampled),
+                      kStep_s * static_cast<double>(step_ - std::exchange(acted_from_, acting_.sampled))};
+  newest_sample_ = step_;
   return true;
 }
 
@@ -30,20 +34,19 @@ DeviceHealth SimulatedTool::health(double) noexcept {
   DeviceHealth health;
   health.sample_age_s = 0.0;
   health.interval_s = settings_.sample_s;
-  health.lag_s = settings_.delay_s + 0.5 * std::max(1e-3, settings_.sample_s);
   return health;
 }
 
 void SimulatedTool::write(double force_N) noexcept {
   if (count_ == written_.size()) return;  // a delay of 10 ms fills less than half
-  written_[(first_ + count_++) % written_.size()] = {force_N, step_ + steps_in(settings_.delay_s)};
+  written_[(first_ + count_++) % written_.size()] = {force_N, newest_sample_, step_ + steps_in(settings_.delay_s)};
 }
 
 // Acceleration is constant within a step, so that the work of the held force is exact
 // and the integration adds no energy to a free mass.
 void SimulatedTool::advance(double aim_m, double aim_m_per_s, double push_N) noexcept {
   while (count_ > 0 && written_[first_].due <= step_) {
-    force_N_ = written_[first_].force_N;
+    acting_ = written_[first_];
     first_ = (first_ + 1) % written_.size();
     --count_;
   }
@@ -51,10 +54,10 @@ void SimulatedTool::advance(double aim_m, double aim_m_per_s, double push_N) noe
   const double drive_N = grip.stiffness_N_per_m * (aim_m - position_m_) +
                          grip.damping_Ns_per_m * (aim_m_per_s - velocity_m_per_s_) + push_N;
   const double before_m_per_s = velocity_m_per_s_;
-  velocity_m_per_s_ += kStep_s * (drive_N - force_N_) / grip.mass_kg;
+  velocity_m_per_s_ += kStep_s * (drive_N - acting_.force_N) / grip.mass_kg;
   const double way_m = 0.5 * kStep_s * (before_m_per_s + velocity_m_per_s_);
   position_m_ += way_m;
-  const double work_J = force_N_ * way_m;
+  const double work_J = acting_.force_N * way_m;
   (work_J > 0.0 ? energy_.put_in_J : energy_.got_out_J) += std::abs(work_J);
   ++step_;
 }
@@ -65,9 +68,7 @@ void SimulatedTool::place(double position_m, double velocity_m_per_s) noexcept {
 }
 
 ClosedLoop::ClosedLoop(const ClosedLoopSettings& settings)
-    : tool_(settings),
-      live_(tool_, slot_, LiveTickSettings{{}, nullptr, settings.passivity}),
-      uneven_(settings.uneven) {
+    : tool_(settings), live_(tool_, slot_), uneven_(settings.uneven) {
   controls_.scale = settings.scale;
 }
 

@@ -43,7 +43,6 @@ struct ClosedLoopSettings {
   // Moves the deadline of the next tick, in steps, and returns the step of the tick; null: ticks are even.
   std::function<std::int64_t(std::int64_t& deadline)> uneven{};
   ForceLimits limits{10.0, 5000.0, 0.0};  // of a typical force-feedback device
-  bool passivity = true;                  // false: without the passivity controller
   double sample_s = 0.0;                  // interval of the samples; 0: one sample in each tick
   ForceScale scale{};
 };
@@ -65,7 +64,7 @@ class SimulatedTool final : public Device {
   ForceLimits limits() const noexcept override { return settings_.limits; }
   bool read(double now_s, DeviceSample& sample) noexcept override;
   void write(double force_N) noexcept override;
-  // Reports the delay and sample interval, as DeviceEndpoint does.
+  // Reports the interval between samples, as DeviceEndpoint does.
   DeviceHealth health(double now_s) noexcept override;
 
   // One step of 50 us towards `aim_m`, which moves at `aim_m_per_s`.
@@ -75,19 +74,21 @@ class SimulatedTool final : public Device {
   double time_s() const noexcept;
   double position_m() const noexcept { return position_m_; }
   double velocity_m_per_s() const noexcept { return velocity_m_per_s_; }
-  double force_N() const noexcept { return force_N_; }
+  double force_N() const noexcept { return acting_.force_N; }
   const LoopEnergy& energy() const noexcept { return energy_; }
 
  private:
   struct Written {
     double force_N = 0.0;
-    std::int64_t due = 0;  // step at which it takes effect
+    std::int64_t sampled = 0;  // step of the sample from which it was computed
+    std::int64_t due = 0;      // step at which it takes effect
   };
 
   ClosedLoopSettings settings_;
   std::string name_ = "simulated tool";
-  std::int64_t step_ = 0, read_step_ = -1, sample_step_ = 0;
-  double position_m_ = -2e-3, velocity_m_per_s_ = 0.0, force_N_ = 0.0;
+  std::int64_t step_ = 0, read_step_ = -1, sample_step_ = 0, newest_sample_ = 0, acted_from_ = 0;
+  double position_m_ = -2e-3, velocity_m_per_s_ = 0.0;
+  Written acting_;
   std::array<Written, 64> written_{};
   std::size_t first_ = 0, count_ = 0;
   LoopEnergy energy_;

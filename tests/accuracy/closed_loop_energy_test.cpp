@@ -7,7 +7,6 @@
 #include <string>
 
 #include "tests/support/closed_loop_measures.h"
-#include "tests/support/live_doubles.h"
 
 namespace palpate::test {
 namespace {
@@ -22,11 +21,10 @@ struct EnergyLimits {
   double beyond_step_J = 0.0;
   double mean_cost_jnd = 1.0;
   double largest_cost_jnd = kInfinity;
-  bool passivity_in_cycles = true;
   bool every_ticking = false;  // in strokes; else only the worst one, Ticking::gaps
 };
 
-// Silicone is passive without the controller, and the controller takes nothing away from a hand on it.
+// The controller takes nothing away from a hand on silicone.
 // The stiff block: its own viscosity helps against the damping of a held and late force, -4.5 N s/m. Measured cost:
 // 0.67 JND (mean of all ticks in contact) and 13 JND (largest, when the tool leaves the block within 50 ms).
 // The others: a held and late force of up to 4 kN/m acts like -6 N s/m. With the controller it lacks less than the
@@ -34,11 +32,7 @@ struct EnergyLimits {
 // Known limitation: the sponge (17 N at 3.3 kN/m) returns up to 106 % of the energy of a stroke and a surplus of up to
 // 6.8 mJ. The controller, limited to 12 N s/m, cannot dissipate that within 50 ms.
 const EnergyLimits kLimits[] = {
-    {.material = "maxwell",
-     .least_damping_Ns_per_m = 0.0,
-     .largest_cost_jnd = 0.1,
-     .passivity_in_cycles = false,
-     .every_ticking = true},
+    {.material = "maxwell", .least_damping_Ns_per_m = 0.0, .largest_cost_jnd = 0.1, .every_ticking = true},
     {.material = "stiff",
      .least_damping_Ns_per_m = held_and_late_Ns_per_m(kStiffSpring_N_per_m),
      .worst_return = kInfinity,
@@ -57,17 +51,10 @@ TEST(ClosedLoop, CyclesGiveLessEnergyThanAFingerTakes) {
   for (const EnergyLimits& limits : kLimits) {
     for (const ModelPtr& model : loop_models(limits.material)) {
       const std::string who = std::string(limits.material) + ", " + model->name();
-      const double least =
-          least_damping_Ns_per_m(model, press_of(limits.material, model).depth_m, limits.passivity_in_cycles);
+      const double least = least_damping_Ns_per_m(model, press_of(limits.material, model).depth_m);
       say("cycles, " + who, "damping of %.2f N s/m or more, %.2f needed", least, limits.least_damping_Ns_per_m);
       EXPECT_GE(least, limits.least_damping_Ns_per_m) << who;
     }
-  }
-  // The result of a spring has a closed form; at 40 Hz it is a tenth larger.
-  for (const double stiffness : {kSoftSpring_N_per_m, kStiffSpring_N_per_m}) {
-    const double expected = held_and_late_Ns_per_m(stiffness);
-    EXPECT_NEAR(least_damping_Ns_per_m(spring(stiffness), kFirmOnStiff.depth_m, 5e-6, 5e-4, Ticking::even, false),
-                expected, -0.2 * expected);
   }
 }
 
@@ -97,27 +84,17 @@ TEST(ClosedLoop, StrokesOfAHandGiveLessThanTheyTake) {
       EXPECT_LE(worst.largest_cost_jnd, limits.largest_cost_jnd) << who;
     }
   }
-  for (const Grip& grip : kGrips) {
-    ClosedLoopSettings settings{grip, 5e-6, kOneTick_s, ticks(Ticking::even)};
-    settings.passivity = false;
-    EXPECT_GT(stroke(spring(kSoftSpring_N_per_m), settings, kFirm).worst_return, 1.2) << grip.name;
-  }
 }
 
 // A mass thrown at the surface, at 0.0125 to 0.1 m/s, stays where silicone has little viscosity. The passivity
 // controller does not see the energy of one encoder step: each throw returns at most that more than it put in, 0.7 to
-// 31 % of it. Without the controller a fine encoder shows up to 25 % more.
+// 31 % of it.
 TEST(ClosedLoop, AMassThrownAtSiliconeReturnsLittleMoreEnergyThanItHad) {
   for (const ModelPtr& model : silicone_models()) {
     for (const double encoder_m : kEncoders_m) {
       for (const Ticking ticking : kTickings) {
         ClosedLoopSettings settings{mass_alone(), encoder_m, kOneTick_s, ticks(ticking)};
         EXPECT_LE(stroke(model, settings, kFirm).own_beyond_step_J, 0.0) << model->name() << ", " << encoder_m;
-        settings.passivity = false;
-        const double without_J = stroke(model, settings, kFirm).own_beyond_step_J;
-        if (encoder_m < kEncoders_m[0]) {
-          EXPECT_GT(without_J, 0.0) << model->name();
-        }
       }
     }
   }

@@ -115,12 +115,11 @@ Rest hold(const ForcePtr& model, const ClosedLoopSettings& settings, const HandP
   return rest;
 }
 
-Rest worst_hold(const ForcePtr& model, const Grip& grip, const HandPress& press, double seconds, bool passivity) {
+Rest worst_hold(const ForcePtr& model, const Grip& grip, const HandPress& press, double seconds) {
   Rest worst;
   for (const double encoder_m : kEncoders_m) {
     for (const Ticking ticking : kTickings) {
       ClosedLoopSettings settings{grip, encoder_m, kOneTick_s, ticks(ticking)};
-      settings.passivity = passivity;
       worst.keep_worse(hold(model, settings, press, seconds));
     }
   }
@@ -128,11 +127,10 @@ Rest worst_hold(const ForcePtr& model, const Grip& grip, const HandPress& press,
 }
 
 double least_damping_Ns_per_m(const ForcePtr& model, double middle_m, double encoder_m, double amplitude_m,
-                              Ticking ticking, bool passivity) {
+                              Ticking ticking) {
   double least = std::numeric_limits<double>::infinity();
   for (const double rate_Hz : {2.0, 5.0, 10.0, 20.0, 40.0}) {
     ClosedLoopSettings settings{lead(), encoder_m, kOneTick_s, ticks(ticking)};
-    settings.passivity = passivity;
     ClosedLoop loop(settings);
     loop.publish(model);
     const double w = 2.0 * std::numbers::pi * rate_Hz;
@@ -150,12 +148,12 @@ double least_damping_Ns_per_m(const ForcePtr& model, double middle_m, double enc
   return least;
 }
 
-double least_damping_Ns_per_m(const ForcePtr& model, double middle_m, bool passivity) {
+double least_damping_Ns_per_m(const ForcePtr& model, double middle_m) {
   double least = std::numeric_limits<double>::infinity();
   for (const double encoder_m : kEncoders_m) {
     for (const double amplitude_m : {1e-4, 5e-4}) {
       for (const Ticking ticking : {Ticking::even, Ticking::gaps}) {
-        least = std::min(least, least_damping_Ns_per_m(model, middle_m, encoder_m, amplitude_m, ticking, passivity));
+        least = std::min(least, least_damping_Ns_per_m(model, middle_m, encoder_m, amplitude_m, ticking));
       }
     }
   }

@@ -90,17 +90,16 @@ struct Rest {
 Rest hold(const ForcePtr& model, const ClosedLoopSettings& settings, const HandPress& press, double seconds,
           double still_s = 0.25);
 // The worst result over both encoders and all values of Ticking, with one tick of delay.
-Rest worst_hold(const ForcePtr& model, const Grip& grip, const HandPress& press, double seconds = 1.5,
-                bool passivity = true);
+Rest worst_hold(const ForcePtr& model, const Grip& grip, const HandPress& press, double seconds = 1.5);
 
 // Closed cycles within the block along a sine of `amplitude_m` about `middle_m`.
 // Returns the damping that absorbs the same energy per cycle,
 //   b = (put in - got out) / (pi w A^2),
 // the minimum over 2 to 40 Hz. At or above 0 no cycle generates energy.
 double least_damping_Ns_per_m(const ForcePtr& model, double middle_m, double encoder_m, double amplitude_m,
-                              Ticking ticking, bool passivity);
+                              Ticking ticking);
 // The minimum over both encoders, amplitudes of 0.1 and 0.5 mm, even and uneven ticks.
-double least_damping_Ns_per_m(const ForcePtr& model, double middle_m, bool passivity = true);
+double least_damping_Ns_per_m(const ForcePtr& model, double middle_m);
 
 struct Strokes {
   double worst_return = 0.0;   // largest ratio of energy returned to energy put in, of one stroke

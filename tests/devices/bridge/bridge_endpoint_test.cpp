@@ -27,7 +27,7 @@ TEST(BridgeEndpoint, PushesWithoutZeroingAndMeasuresForce) {
   EXPECT_NEAR(simulated.motor_N(), wanted_N(simulated), kResolution_N);
   EXPECT_LT(simulated.model->force_units(), 0.0) << "out of the block";
   EXPECT_EQ(simulated.snapshot.measured_N, 0.25);
-  EXPECT_GT(simulated.snapshot.device.round_trip_s, 0.0);
+  EXPECT_NEAR(simulated.snapshot.delay_ms, 1.5F, 0.5F);
   EXPECT_NEAR(simulated.snapshot.device.interval_s, 1e-3, 1e-4);
 }
 

@@ -279,8 +279,8 @@ TEST(BridgeLines, ErrorsHaveReasonAndAdvice) {
                                                              "from 1 to 65535", "devices/README.md#bridge"}));
   EXPECT_TRUE(test::has_parts(complaint("somewhere"), {"--device", "/dev/TTY", "BAUD", "PATH", "HOST", "PORT",
                                                        "COMMAND", "devices/README.md#bridge"}));
-  EXPECT_EQ(with_remote_bridge("bridge:tcp:lab:5000"), "bridge:remote-tcp:lab:5000");
-  EXPECT_EQ(with_remote_bridge("hand"), "hand");
+  EXPECT_TRUE(test::has_parts(complaint("remote-tcp:192.0.2.1:5000"), {"expected /dev/TTY"}));
+  EXPECT_TRUE(test::has_parts(complaint("unix:/nowhere/\x1b[31m"), {"/nowhere/\\x1b[31m:"}));
 }
 
 }  // namespace

@@ -40,7 +40,7 @@ TEST(DeviceEndpoint, PushesOnceItIsZeroed) {
   EXPECT_NEAR(simulated.motor_N(), simulated.spring_N(simulated.position_m()), kResolution_N);
   EXPECT_LT(simulated.model->force_units(), 0.0) << "against the growing counts";
   EXPECT_LT(simulated.snapshot.device.sample_age_s, 2e-3);
-  EXPECT_TRUE(std::isnan(simulated.snapshot.device.round_trip_s)) << "it confirms nothing";
+  EXPECT_NEAR(simulated.snapshot.delay_ms, 3.25F, 0.5F) << "by its arrivals, because it confirms nothing";
 }
 
 TEST(DeviceEndpoint, ZeroingWaitsForRest) {
@@ -274,15 +274,6 @@ TEST(BridgeEndpoint, ADamagedFrameCostsNoForce) {
   }
 }
 
-TEST(BridgeEndpoint, TheLagIsAtLeastTheIntervalBetweenSamples) {
-  for (const std::uint32_t period_us : {12'500u, 10'000u, 4'000u}) {
-    SimulatedDevice simulated(&kBridgeProtocol);
-    simulated.board().period_us = period_us;
-    simulated.press();
-    EXPECT_GE(simulated.snapshot.device.lag_s, 1e-6 * period_us);
-  }
-}
-
 TEST(BridgeEndpoint, ARateThatFallsBelowOneHundredHzTakesTheForceAwayUntilItRises) {
   for (const std::uint32_t period_us : {12'500u, 20'000u, 33'333u}) {
     SCOPED_TRACE(period_us);
@@ -296,7 +287,7 @@ TEST(BridgeEndpoint, ARateThatFallsBelowOneHundredHzTakesTheForceAwayUntilItRise
     for (int tick = 0; tick < 200; ++tick) ASSERT_EQ(simulated.tick().rendered_N, 0.0);
     simulated.board().period_us = 1000;
     std::uint32_t faults = 0;
-    EXPECT_LT(ticks_until(simulated, true, 1000, faults), 500);
+    EXPECT_LT(ticks_until(simulated, true, 3000, faults), 1700) << "after a second";
     EXPECT_LT(simulated.snapshot.rendered_N, 0.2) << "with a ramp";
     simulated.run_s(4.0);
     EXPECT_GT(simulated.motor_N(), 3.5);

@@ -110,15 +110,20 @@ TEST(StreamMonitor, TheCounterMayWrap) {
   EXPECT_EQ(monitor.state().lost, 0u);
 }
 
+// A hand that keeps a tool within a step of the sensor is no fault.
 TEST(StreamMonitor, StandingStillIsStuckOnlyUnderForce) {
   Stream stream;
   stream.zero();
   for (int i = 0; i < 2000; ++i) stream.step(0, 0.1);
-  EXPECT_EQ(stream.monitor.state().lost, 0u);
+  for (int i = 0; i < 2000; ++i) stream.step(0, 0.5 + 0.1 * (i % 2));
+  EXPECT_EQ(stream.monitor.state().lost, 0u) << "a small force that hardly changes";
   for (int i = 0; i < 2000; ++i) stream.step(i / 400, 3.0);
   EXPECT_EQ(stream.monitor.state().lost, 0u) << "a count now and then";
   for (int i = 0; i < 510; ++i) stream.step(4, 3.0);
   EXPECT_EQ(stream.monitor.state().lost, device_fault::kStuck);
+  stream.zero();
+  for (int i = 0; i < 510; ++i) stream.step(4, 0.3 + 0.3 * (i % 2));
+  EXPECT_EQ(stream.monitor.state().lost, device_fault::kStuck) << "a small force that changes";
 }
 
 TEST(StreamMonitor, ASequenceThatBeginsAnewIsAReset) {
@@ -175,6 +180,29 @@ TEST(StreamMonitor, FewerThanOneHundredSamplesASecondAreAFault) {
     EXPECT_GT(slow_after_s(period_us), 0.0) << period_us;
     EXPECT_LT(slow_after_s(period_us), 2.5) << period_us;
   }
+}
+
+// 95.5 Hz with jitter, and 103 Hz: one cut. It ends after a second at 106 Hz.
+TEST(StreamMonitor, ARateNearTheLimitIsCutOnce) {
+  Stream stream(true);
+  const auto slow_at = [&](double rate_Hz, double seconds) {
+    int changes = 0;
+    for (const double until_s = stream.now_s + seconds; stream.now_s < until_s;) {
+      const bool before = (stream.monitor.state().transient & device_fault::kSlow) != 0;
+      const auto period_us = static_cast<std::uint32_t>(1e6 / rate_Hz) + (stream.next.sequence % 7) * 300 - 900;
+      stream.now_s += 1e-6 * period_us - 1e-3;
+      stream.next.time_us += period_us - 1000;
+      stream.step(stream.next.counts);
+      if (((stream.monitor.state().transient & device_fault::kSlow) != 0) != before) ++changes;
+    }
+    return changes;
+  };
+  EXPECT_EQ(slow_at(200.0, 0.5), 0);
+  EXPECT_EQ(slow_at(95.5, 20.0), 1);
+  EXPECT_EQ(slow_at(103.0, 5.0), 0) << "not yet";
+  EXPECT_EQ(slow_at(107.0, 1.0), 0) << "not yet";
+  EXPECT_EQ(slow_at(107.0, 3.0), 0) << "the fault is no longer renewed";
+  EXPECT_GT(stream.now_s, stream.monitor.state().transient_until_s);
 }
 
 TEST(StreamMonitor, LostSamplesOfADeviceWithOneHundredASecondAreNoFault) {

@@ -54,7 +54,7 @@ TEST(FaultRecorder, WritesATable) {
   tick.loop_time_s = 1.5;
   tick.tick.position_m = 2.5e-3;
   tick.commanded_N = 3.0;
-  tick.device.sample_age_s = tick.device.round_trip_s = 0.0;
+  tick.device.sample_age_s = 0.0;
   tick.faults = 256;
   tick.device.faults = 1;
   tick.samples = 1;
@@ -62,7 +62,7 @@ TEST(FaultRecorder, WritesATable) {
   const std::string line = "1.5,0,0.0025,0,3,0,0,0,1,256,1,0\n";
   EXPECT_EQ(test::read_text(folder.file("fault.csv")),
             "loop_time_s,sample_time_s,position_m,velocity_m_per_s,commanded_N,rendered_N,sample_age_s,"
-            "round_trip_s,samples,faults,device_faults,limiter_flags\n" +
+            "delay_ms,samples,faults,device_faults,limiter_flags\n" +
                 line + line);
   EXPECT_FALSE(write_fault_file(folder.file("fault.csv"), {}).ok()) << "never writes over";
 }

@@ -39,9 +39,7 @@ TEST(LiveTickSafety, NobodyAtTheDeadManKeyIsNoForce) {
 // Into the block at up to 24 mm/s and out again.
 TEST(LiveTickSafety, AScaledForceIsEasedAndLimitedAndNeverPulls) {
   PathDevice plain_device(test::strokes), device(test::strokes, {6.0, 1e9, 0.0});
-  LiveTickSettings settings;
-  settings.passivity = false;
-  LiveRig plain(plain_device, settings), rig(device, settings);
+  LiveRig plain(plain_device), rig(device);
   plain.publish(1, {spring(600.0)});
   rig.publish(1, {spring(600.0)});
   double last_N = 0.0, largest_N = 0.0;

@@ -67,7 +67,7 @@ TEST(PanelWords, OnlyAZeroedDeviceHasALine) {
   health.device_name = "hid";
   health.newest.device.zeroing = Zeroing::done;
   health.newest.device.sample_age_s = 0.0012;
-  health.newest.device.round_trip_s = 0.0021;
+  health.newest.delay_ms = 2.1F;
   health.newest.heat_share = 0.4F;
   EXPECT_TRUE(test::has_parts(device_line(health), {"hid", "1.2 ms", "2.1 ms", "40 %"}));
   health.newest.stiffness_share = 0.5F;
