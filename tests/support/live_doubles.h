@@ -65,7 +65,8 @@ class CountingModel final : public NamedModel {
   mutable std::atomic<std::uint64_t> evaluations_ = 0;
 };
 
-// Returns one sample per tick, at the position `path(time)`. `state` is its health; a `silent` device has no samples.
+// Returns one sample per tick, at the position `path(time)`. `state` is its health, `force_age` that of each sample; a
+// `silent` device has no samples.
 class PathDevice final : public Device {
  public:
   using Path = double (*)(double time_s);
@@ -81,6 +82,7 @@ class PathDevice final : public Device {
     sample = {};
     sample.tool.time_s = now_s;
     sample.tool.position_m = path_(now_s);
+    sample.force_age = force_age;
     return true;
   }
   DeviceHealth health(double) noexcept override { return state; }
@@ -92,6 +94,7 @@ class PathDevice final : public Device {
   double force_N() const { return force_N_; }
   int writes() const { return writes_; }
   DeviceHealth state;
+  ForceAge force_age;
   bool silent = false;
 
  private:

@@ -338,7 +338,7 @@ TEST(LiveTick, ASurfaceAtAnotherPositionChangesNoFigure) {
     EXPECT_NEAR(set.stiffness_N_per_m[i], shifted_set.stiffness_N_per_m[i], 1e-6 * set.stiffness_N_per_m[i]);
     EXPECT_NEAR(set.damping_Ns_per_m[i], shifted_set.damping_Ns_per_m[i], 1e-6);
   }
-  device.state.lag_s = shifted_device.state.lag_s = 5e-3;
+  device.force_age = shifted_device.force_age = {5e-3, 5e-3};
   for (LiveRig* one : {&rig, &shifted_rig}) one->live().warm_up();
   double least_share = 1.0;
   for (int i = 0; i < 1500; ++i) {
