@@ -145,7 +145,7 @@ int run_program(const std::vector<std::string>& words) {
   try {
     if (words.empty()) return fail_usage(app, verbs, "no verb given");
     app.require_subcommand(1);
-    app.parse({words.rbegin(), words.rend()});
+    app.parse(std::vector<std::string>(words.rbegin(), words.rend()));
     const Status status = run_chosen(verbs);
     if (status) return kDone;
     // The exit code of a program that a signal has ended, as in a shell.

@@ -208,11 +208,11 @@ class HereditaryBlock : public Block {
   }
   void begin_substep() noexcept override {
     // Four independent sums, so that no addition waits for the one before.
-    constexpr std::size_t kLanes = 4;
-    static_assert(kTimes % kLanes == 0);
-    double sum_N[kLanes] = {};
-    for (std::size_t i = 0; i < kTimes; i += kLanes) {
-      for (std::size_t lane = 0; lane < kLanes; ++lane) {
+    constexpr std::size_t kTimesAtOnce = 4;
+    static_assert(kTimes % kTimesAtOnce == 0);
+    double sum_N[kTimesAtOnce] = {};
+    for (std::size_t i = 0; i < kTimes; i += kTimesAtOnce) {
+      for (std::size_t lane = 0; lane < kTimesAtOnce; ++lane) {
         const double left_N = (memory_N_[i + lane] + kick_[i + lane] * settled_N_) * decay_[i + lane];
         memory_N_[i + lane] = std::abs(left_N) > kNoForce_N ? left_N : 0.0;
         sum_N[lane] += memory_N_[i + lane];
