@@ -69,6 +69,12 @@ void flush_folder_of(const std::string& path) {
   close(descriptor);
 }
 
+// A file that replaces another has its permissions.
+void copy_mode(const std::string& path, int descriptor) {
+  struct stat status {};
+  if (stat(path.c_str(), &status) == 0 && S_ISREG(status.st_mode)) fchmod(descriptor, status.st_mode & 0777);
+}
+
 }  // namespace
 
 Result<AtomicFile> AtomicFile::prepare(const std::string& path, bool overwrite) {
@@ -93,11 +99,13 @@ Result<AtomicFile> AtomicFile::create(const std::string& path, bool overwrite) {
   AtomicFile& file = *prepared;
   const std::string folder = folder_of(path);
   file.descriptor_ = open(folder.c_str(), O_WRONLY | O_TMPFILE | O_CLOEXEC, 0666);
+  copy_mode(path, file.descriptor_);
   if (file.descriptor_ >= 0 && access(link_to(file.descriptor_).c_str(), F_OK) == 0) return prepared;
   file.close_descriptor();
   file.temporary_path_ = temporary_name_in(folder);
   file.descriptor_ = open(file.temporary_path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
   if (file.descriptor_ < 0) return file.refused_folder();
+  copy_mode(path, file.descriptor_);
   return prepared;
 }
 
@@ -116,6 +124,7 @@ Result<AtomicFile> AtomicFile::create_in_part(const std::string& path, bool over
   if (fstat(file.descriptor_, &status) == 0 && status.st_size > 0 && !overwrite)
     return Error{part + " is left from a program that was killed; rename it to keep it, or delete it"};
   if (ftruncate(file.descriptor_, 0) != 0) return file.refused_folder();
+  copy_mode(path, file.descriptor_);
   file.temporary_path_ = part;
   file.in_part_ = true;
   return prepared;

@@ -77,7 +77,8 @@ std::string printable(std::string_view text, std::size_t limit) {
     if (out.size() >= limit) return out + "...";
     const std::size_t bytes = utf8_sequence_bytes(text.substr(i));
     const std::string_view sequence = text.substr(i, std::max<std::size_t>(bytes, 1));
-    if (bytes == 0 || is_control(sequence))
+    const bool ends_line = sequence == "\n" && limit == std::string_view::npos;
+    if (bytes == 0 || (is_control(sequence) && !ends_line))
       for (const char c : sequence) out += escaped(static_cast<unsigned char>(c));
     else
       out += sequence;

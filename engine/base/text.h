@@ -20,7 +20,7 @@ std::string lower_ascii(std::string_view text);
 // The number of bytes at the start of `text` that are well-formed UTF-8. Source: RFC 3629, section 4.
 std::size_t utf8_bytes(std::string_view text);
 
-// `text` for a message: bytes that are not printable as \xHH, truncated with "..." after about `limit` bytes.
+// `text` with bytes that are not printable as \xHH, truncated ("...") after about `limit`; npos: whole, with its lines.
 std::string printable(std::string_view text, std::size_t limit = 40);
 
 // "path:line:column: ", the beginning of a message about the byte at `offset` of `text`; columns count bytes from 1.

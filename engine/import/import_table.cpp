@@ -302,7 +302,7 @@ class Importer : ImportMessages {
     table_.layout.names.clear();
     table_.layout.units.clear();
     table_.notes = std::move(notes);
-    table_.recording.name = std::filesystem::path(label).stem().string();
+    table_.recording.name = printable(std::filesystem::path(label).stem().string(), std::string::npos);
     return std::move(table_);
   }
 

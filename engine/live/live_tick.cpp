@@ -98,6 +98,7 @@ void LiveTick::update_models() noexcept {
   outgoing_selected_ = snapshot_.selected;
   mixer_.jump_to(ForceMixer::kOutgoing);
   snapshot_.models_id = models_->id;
+  if (models_->reference == nullptr) snapshot_.reference_N = kNoForce;
   snapshot_.selected = models_->selected;
   snapshot_.tick = models_->tick.snapshot();
 }

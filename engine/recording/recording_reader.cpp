@@ -165,7 +165,7 @@ class RecordingReader {
 
   Result<Recording> read(std::size_t most_rows, std::size_t expected_rows) {
     if (!read_header()) return *error_;
-    Recording recording{std::filesystem::path(label_).stem().string(),
+    Recording recording{printable(std::filesystem::path(label_).stem().string(), std::string::npos),
                         {has(ColumnRole::kVelocity), has(ColumnRole::kAcceleration)},
                         {}};
     recording.rows.reserve(std::min(most_rows, expected_rows));

@@ -41,7 +41,7 @@ struct Arguments {
 };
 
 int fail(const std::string& message, int code = 1) {
-  std::fprintf(stderr, "error: %s\n", message.c_str());
+  std::fprintf(stderr, "error: %s\n", printable(message, std::string::npos).c_str());
   return code;
 }
 

@@ -90,7 +90,9 @@ void print_gains(const std::vector<PartGain>& gains) {
   std::printf("\n");
 }
 
-void print_line(const char* label, const std::string& text) { std::printf("%-17s %s\n", label, text.c_str()); }
+void print_line(const char* label, const std::string& text) {
+  std::printf("%-17s %s\n", label, printable(text, std::string::npos).c_str());
+}
 
 std::string correction_text(const CorrectionChoice& choice) {
   if (!choice.used) return "none: it does not lower the cross-validated error, so the model is the trend alone";
@@ -166,7 +168,7 @@ Status run_fit(const FitArguments& arguments) {
   const std::string contradiction = training_contradiction(*checked, data);
   if (Status status = save_model(arguments.out, data, arguments.force); !status) return status;
   line.reset();  // ends the progress line
-  if (!contradiction.empty()) std::cerr << "note: " << contradiction << "\n";
+  if (!contradiction.empty()) std::cerr << "note: " << printable(contradiction, std::string::npos) << "\n";
   if (arguments.json) {
     print_json(fit_json(*fitted, seconds));
   } else {

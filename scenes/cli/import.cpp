@@ -110,8 +110,8 @@ void print_text(const ImportOptions& options, const ImportRequest& request, cons
   }
   for (const std::string& flip : flipped_roles(request)) std::cout << "flipped    " << flip << "\n";
   for (const std::string& note : table.notes) std::cout << "note       " << note << "\n";
-  std::cout << "written    " << options.out << ": " << table.recording.rows.size() << " rows, " << seconds_of(table)
-            << " s\nnext       palpate check " << shell_word(options.out) << "\n";
+  std::cout << "written    " << printable(options.out, std::string::npos) << ": " << table.recording.rows.size()
+            << " rows, " << seconds_of(table) << " s\nnext       palpate check " << shell_word(options.out) << "\n";
 }
 
 void print_import_json(const ImportOptions& options, const ImportRequest& request, const ImportedTable& table) {

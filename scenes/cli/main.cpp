@@ -48,7 +48,7 @@ constexpr Verb kVerbs[] = {
 };
 
 int fail(const std::string& message, int exit_code) {
-  const std::string block = "error: " + message + "\n";
+  const std::string block = "error: " + printable(message, std::string::npos) + "\n";
   std::fflush(stdout);
   std::fwrite(block.data(), 1, block.size(), stderr);
   return exit_code;

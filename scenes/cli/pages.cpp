@@ -114,7 +114,8 @@ Status run_hard_cases(const HardOptions& options) {
   }
   if (!options.page.out.empty()) {
     if (const Status written = write_hard_page(*rows, options.page); !written) return written;
-    if (!options.json) std::printf("written  %s/index.html, with its tables\n", options.page.out.c_str());
+    if (!options.json)
+      std::printf("written  %s/index.html, with its tables\n", printable(options.page.out, std::string::npos).c_str());
   }
   const std::vector<std::string> missed = missed_cells(*rows);
   if (missed.empty()) return {};

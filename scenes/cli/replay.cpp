@@ -360,7 +360,7 @@ Status run(const Options& options) {
     for (const ReplayedRecording& replayed : all) print_recording(replayed, options.all);
     for (const auto* paths : {&forces, &plots})
       for (const std::string& path : *paths)
-        if (!path.empty()) std::printf("written  %s\n", path.c_str());
+        if (!path.empty()) std::printf("written  %s\n", printable(path, std::string::npos).c_str());
   }
   return {};
 }

@@ -45,7 +45,7 @@ Status run_synth(const SynthOptions& options) {
   const Status written = write_recording(
       options.out, *recording, describe_recording(options.rig, *material, recording->rows.size()), options.force);
   if (!written) return written;
-  std::cout << "written  " << options.out << ": " << recording->rows.size() << " rows, "
+  std::cout << "written  " << printable(options.out, std::string::npos) << ": " << recording->rows.size() << " rows, "
             << general(recording->rows.back().time_s - recording->rows.front().time_s, 6) << " s\n";
   return {};
 }

@@ -19,7 +19,8 @@ Result<std::vector<CheckedFile>> check_before_use(const std::vector<std::string>
   auto files = check_recording_files(paths, request);
   if (!files) return files.error();
   if (const Status usable = refuse_unusable(*files); !usable) return usable.error();
-  for (const std::string& line : warning_lines(*files)) std::fprintf(stderr, "warning: %s\n", line.c_str());
+  for (const std::string& line : warning_lines(*files))
+    std::fprintf(stderr, "warning: %s\n", printable(line, std::string::npos).c_str());
   return files;
 }
 
@@ -27,7 +28,7 @@ namespace {
 
 void print_check_text(const CheckedFile& file) {
   const std::string verdict = file.check.verdict();
-  std::printf("%s: %s\n", file.path.c_str(),
+  std::printf("%s: %s\n", printable(file.path, std::string::npos).c_str(),
               verdict == "care"       ? "usable with care"
               : verdict == "unusable" ? "not usable"
                                       : "usable");

@@ -9,6 +9,12 @@
 #include "models/trend/trend_columns.h"
 
 namespace palpate {
+namespace {
+
+// The loop has one set, another waits for it, and snapshots of earlier ones may still be unread.
+constexpr std::size_t kKeptSets = 16;
+
+}  // namespace
 
 SessionModels::SessionModels(const Scene& scene, std::uint64_t seed, Notices& notices, std::vector<Recording> training,
                              const std::string& ready)
@@ -262,6 +268,7 @@ std::unique_ptr<LiveModels> SessionModels::make_set(const SensorSpec& sensor,
   if (const auto model = this->reference(); model && set.models.contains(*model))
     next->written_model = static_cast<std::uint32_t>(set.index_of(*model));
   sets_.push_back(std::move(set));
+  if (sets_.size() > kKeptSets) sets_.erase(sets_.begin());
   return next;
 }
 

@@ -301,7 +301,13 @@ Result<std::shared_ptr<const FittedModel>> load_model(const std::string& path) t
       read_plain_file(path, "a model file", ", or make one with palpate fit", kMaximumModelFileBytes);
   if (!text) return text.error();
   Result<ModelData> data = read_model_text(*text, path);
-  if (!data) return data.error();
+  if (!data) {
+    // One line, because the file can only be made again.
+    const std::string& all = data.error().message;
+    const auto lines = std::ranges::count(all, '\n');
+    return Error{all.substr(0, all.find('\n')) +
+                 (lines > 0 ? " (and " + std::to_string(lines) + " more errors)" : std::string())};
+  }
   return std::make_shared<const FittedModel>(std::move(*data));
 } catch (const std::bad_alloc&) {
   return Error{path + ": found more data than memory holds, expected a model file; name a file that palpate fit wrote"};

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "engine/base/signals.h"
@@ -34,6 +35,16 @@ TEST(AtomicFile, WritesMoreThanItsBuffer) {
   const TemporaryFolder folder;
   ASSERT_TRUE(write_file_atomically(folder.file("out"), kMegabyte + "end", false).ok());
   EXPECT_EQ(read_text(folder.file("out")), kMegabyte + "end");
+}
+
+TEST(AtomicFile, AFileThatIsReplacedKeepsItsPermissions) {
+  const TemporaryFolder folder;
+  const std::string path = folder.with_file("out", "secret");
+  ASSERT_EQ(chmod(path.c_str(), 0600), 0);
+  ASSERT_TRUE(write_file_atomically(path, "new", true).ok());
+  struct stat status {};
+  ASSERT_EQ(stat(path.c_str(), &status), 0);
+  EXPECT_EQ(status.st_mode & 0777U, 0600U);
 }
 
 TEST(AtomicFile, LeavesNothingWithoutCommit) {

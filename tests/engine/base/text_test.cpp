@@ -31,6 +31,7 @@ TEST(Printable, EscapesWhatATerminalWouldObey) {
   EXPECT_EQ(printable("\xC2\x9B\xFF"), "\\xc2\\x9b\\xff");
   EXPECT_EQ(printable("abcdef", 3), "abc...");
   EXPECT_EQ(printable("abc", 3), "abc");
+  EXPECT_EQ(printable("a\x1B]0;x\a.csv: found\n  b\n", std::string::npos), "a\\x1b]0;x\\x07.csv: found\n  b\n");
 }
 
 TEST(Trimmed, TakesBlanksAndTabsFromBothEnds) {

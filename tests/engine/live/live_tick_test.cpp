@@ -259,6 +259,8 @@ TEST(LiveTick, StepsTheReferenceOfTheNewestSet) {
     }
   }
   EXPECT_EQ(reference->restarts, 3);
+  rig.publish(2, {spring(300.0)});
+  EXPECT_TRUE(std::isnan(rig.run(500).reference_N)) << "the new set has none";
 }
 
 // With several samples a tick, a snapshot contains only the last.

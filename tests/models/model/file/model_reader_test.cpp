@@ -272,6 +272,10 @@ TEST(ModelReader, ExplainsFilesThatCannotBeRead) {
       test::has_parts(message(folder.file("none.json")), {folder.file("none.json"), "no such file", "palpate fit"}));
   EXPECT_TRUE(test::has_parts(message(folder.path()), {folder.path(), "folder", "; "}));
   EXPECT_TRUE(test::has_parts(message("/dev/null"), {"/dev/null", "pipe", "; "}));
+  const std::string damaged =
+      message(folder.with_file("damaged.json", "{\"format\": \"palpate-model\", \"version\": 1}"));
+  EXPECT_TRUE(test::has_parts(damaged, {"damaged.json:1:", "more errors"}));
+  EXPECT_EQ(damaged.find('\n'), std::string::npos);
   // A sparse file, which occupies almost no disk space.
   const std::string huge = folder.with_file("huge.json", "");
   std::filesystem::resize_file(huge, kMaximumModelFileBytes + 1);
