@@ -245,13 +245,13 @@ Result<MethodFit> fit_method(const PreparedTraining& prepared, const ModelPlan& 
     fit.choices = *selected;
     fit.error_over_jnd = selected->error_over_jnd;
     sites = chosen_sites(*selected, prepared, data);
-    fit.notes.push_back(choices_text(*selected));
+    fit.notes.push_back(choices_text(*selected, asked.method->can_take(kTakesKernel)));
   }
   const CorrectionPtr from = base == nullptr || asked.method->base == nullptr ? nullptr : base->data.correction;
   const Eigen::VectorXd jnd_N = site_thresholds(prepared);
   auto fitted = fit_correction(*asked.method, task_of(asked, sites, jnd_N, from), control.part(kChosen, kFitted));
   if (!fitted) return fitted.error();
-  fit.kernel = sites.kernel;
+  if (asked.method->can_take(kTakesKernel)) fit.kernel = sites.kernel;
   fit.rank = fitted->rank;
   fit.condition_number = fitted->condition_number;
   fit.notes.insert(fit.notes.begin(), fitted->notes.begin(), fitted->notes.end());
@@ -310,7 +310,7 @@ nlohmann::ordered_json fit_json(const MethodFit& fit, double seconds) {
   return {{"name", data.name},
           {"method", data.method},
           {"centres", data.centre_count()},
-          {"kernel", kernel_name(fit.kernel)},
+          {"kernel", fit.kernel ? Json(kernel_name(*fit.kernel)) : Json()},  // without one: null
           {"weighting", data.provenance.weighting},
           {"samples", data.provenance.samples},
           {"samples_after_reduction", data.provenance.samples_after_reduction},

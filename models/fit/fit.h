@@ -48,8 +48,8 @@ struct PreparedTraining {
 
 struct MethodFit {
   ModelData data;
-  std::vector<std::string> notes;  // sentences for the user
-  KernelKind kernel = KernelKind::cubic;
+  std::vector<std::string> notes;        // sentences for the user
+  std::optional<KernelKind> kernel{};    // of a method that takes one
   std::optional<OpenChoices> choices{};  // with Base::force
   double error_over_jnd = 0.0;           // cross-validated (FoldErrors::rms_at_mean_score)
   Eigen::Index rank = 0;                 // as in FittedCorrection

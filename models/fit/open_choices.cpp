@@ -195,10 +195,11 @@ class Selection {
 
 }  // namespace
 
-std::string choices_text(const OpenChoices& choices) {
+std::string choices_text(const OpenChoices& choices, bool has_kernel) {
   const char* normalised =
       choices.range_exponent == 1.0 ? "its range" : "the geometric mean of its range and deviation";
-  return std::string(kernel_name(choices.kernel)) + " kernel, each feature divided by " + normalised +
+  return (has_kernel ? std::string(kernel_name(choices.kernel)) + " kernel, " : "") + "each feature divided by " +
+         normalised +
          (choices.truncation > 0.0 ? ", truncation " + general(choices.truncation, 2)
                                    : ", smoothing " + general(choices.smoothing, 2)) +
          ": cross-validated error " + fixed(choices.error_over_jnd, 3) + " JND";

@@ -31,7 +31,7 @@ struct OpenChoices {
 };
 
 // "cubic kernel, normalised by ...": what was selected, for the user.
-std::string choices_text(const OpenChoices& choices);
+std::string choices_text(const OpenChoices& choices, bool has_kernel = true);
 
 // `features`: at the samples in contact, SI. `sites`: of the same samples, with targets. `common`: with the limits of
 // the force. `centres`: of the method, 0: the direct interpolation. `kernel`: that of the plan, none: selected. Errors:

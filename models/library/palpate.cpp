@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <initializer_list>
 #include <limits>
@@ -209,8 +210,7 @@ Result<ForceLimits> force_limits(const palpate_limits& limits) {
                                        {"stale_after_s", limits.stale_after_s, kEvenInfinite},
                                        {"stop_s", limits.stop_s, kNotNegative}});
   if (!status) return status.error();
-  return ForceLimits{limits.largest_N,      limits.fastest_N_per_s, limits.ramp_s, limits.continuous_N,
-                     limits.thermal_time_s, limits.stale_after_s,   limits.stop_s};
+  return std::bit_cast<ForceLimits>(limits);  // the same fields in the same order
 }
 
 // The last force of the stream after the stages of LiveTick. `given_s` >= 0: the step that the caller names.
@@ -388,10 +388,7 @@ double palpate_stream_predicted_error(const palpate_stream* stream) {
 }
 
 void palpate_limits_default(palpate_limits* limits) {
-  if (limits == nullptr) return;
-  const ForceLimits by_default;
-  *limits = {by_default.largest_N,      by_default.fastest_N_per_s, by_default.ramp_s, by_default.continuous_N,
-             by_default.thermal_time_s, by_default.stale_after_s,   by_default.stop_s};
+  if (limits != nullptr) *limits = std::bit_cast<palpate_limits>(ForceLimits{});
 }
 
 palpate_limiter* palpate_limiter_new(const palpate_limits* limits, char* error, size_t error_size) {

@@ -138,7 +138,7 @@ void print_fit(const PreparedTraining& prepared, const MethodFit& fit, double se
     print_line("relaxation times", bands);
   if (prepared.correction) print_line("correction", correction_text(*prepared.correction));
   for (const std::string& note : fit.notes)
-    print_line(fit.choices && note == choices_text(*fit.choices) ? "selected" : "note", note);
+    print_line(fit.choices && note == choices_text(*fit.choices, fit.kernel.has_value()) ? "selected" : "note", note);
   print_line("training <= JND", fixed(100.0 * provenance.training_within_jnd, 2) + " %" +
                                     (accelerometer ? " (with the accelerometer)" : " (from positions alone)"));
   print_line("written", out);

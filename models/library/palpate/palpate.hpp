@@ -164,13 +164,6 @@ class Limiter {
   std::unique_ptr<palpate_limiter, detail::Free> limiter_;
 };
 
-// The forces of a model along a recording, one for each sample: `palpate replay`. Throws: as Stream.
-inline std::vector<double> replay(const Model& model, const Recording& recording, const Sensor& sensor) {
-  std::vector<double> forces_N(recording->size);
-  palpate_stream_replay(Stream(model, sensor).handle(), &*recording, forces_N.data(), nullptr, nullptr);
-  return forces_N;
-}
-
 // `palpate fit`: one model of all recordings; needs palpate::fit. `options`: as palpate_fit. Slow side. Throws: a
 // recording that is not usable; an option that is not valid.
 inline Model fit(const std::vector<Recording>& recordings, const std::string& options = "") {

@@ -4,6 +4,8 @@
 
 #include <set>
 
+#include "engine/base/text.h"
+#include "models/correction/methods.h"
 #include "tests/support/message_parts.h"
 
 namespace palpate {
@@ -18,13 +20,19 @@ std::vector<std::string> names_of_all() {
   return names;
 }
 
-TEST(ModelPlan, HasElevenNames) {
-  EXPECT_EQ(names_of_all(), (std::vector<std::string>{"direct", "voxel", "random-100", "kdtree-100", "greedy-100",
-                                                      "trend", "trend+direct", "trend+voxel", "trend+random-100",
-                                                      "trend+kdtree-100", "trend+greedy-100"}));
-  EXPECT_EQ(family_names(),
-            "direct, voxel, random, kdtree, greedy, trend, trend+direct, trend+voxel, trend+random, trend+kdtree, "
-            "trend+greedy");
+// Every method on the measured force, the trend, and every method on its residual.
+TEST(ModelPlan, HasTheNamesOfTheTableOfMethods) {
+  std::vector<std::string> names, families;
+  for (const std::string base : {"", "trend+"}) {
+    if (!base.empty()) names.push_back("trend"), families.push_back("trend");
+    for (const Method* method : methods()) {
+      if (method == &kTrendMethod) continue;
+      families.push_back(base + method->name);
+      names.push_back(families.back() + (method->can_take(kTakesCentres) ? "-100" : ""));
+    }
+  }
+  EXPECT_EQ(names_of_all(), names);
+  EXPECT_EQ(family_names(), joined(families));
   EXPECT_EQ(family_names(kTakesGrid), "voxel, trend+voxel");
   EXPECT_EQ(family_names(kTakesCandidates), "greedy, trend+greedy");
   EXPECT_EQ(plan_name({}), "trend+greedy-100") << "the default";

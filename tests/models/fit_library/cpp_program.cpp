@@ -24,8 +24,10 @@ int run(const std::string& path, const std::string& folder) {
   const palpate::Recording recording(path);
   palpate::fit({recording}, "method=random centres=40").save(file);
   const palpate::Model model(file);
-  const palpate::Sensor sensor(recording);
-  for (const double force_N : palpate::replay(model, recording, sensor)) std::printf("%.17g\n", force_N);
+  palpate::Stream stream(model, palpate::Sensor(recording));
+  std::vector<double> forces_N(recording->size);
+  palpate_stream_replay(stream.handle(), &*recording, forces_N.data(), nullptr, nullptr);
+  for (const double force_N : forces_N) std::printf("%.17g\n", force_N);
 
   bool good = recording->size > 1000;
   good = fails([&] { model.save(file); }, "fitted.json") && good;

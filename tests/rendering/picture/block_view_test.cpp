@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "models/correction/methods.h"
 #include "tests/support/virtual_display.h"
 
 namespace palpate {
@@ -187,11 +188,12 @@ TEST_F(BlockViewTest, WhatCarriesAMeaningIsSeenInBothThemes) {
       none.tool_m = kAway_m;
       none.shows_error = false;
       const Picture bare = draw_whole(*one, {none}, theme);
-      for (const char* method : {"trend", "direct", "voxel", "random", "kdtree", "greedy"}) {
+      for (const Method* method : methods()) {
         BlockPose arrow = none;
         arrow.force_N = 4.0F;
-        arrow.arrow = method_colour(method, theme);
-        EXPECT_GE(seen_rows(draw_whole(*one, {arrow}, theme), bare, middle), kRows) << where << ", arrow " << method;
+        arrow.arrow = method_colour(method->name, theme);
+        EXPECT_GE(seen_rows(draw_whole(*one, {arrow}, theme), bare, middle), kRows)
+            << where << ", arrow " << method->name;
       }
       BlockPose probe = none;
       probe.tool_m = kLifted_m;

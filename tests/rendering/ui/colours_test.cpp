@@ -8,12 +8,17 @@
 #include <glm/geometric.hpp>
 #include <string>
 
+#include "models/correction/methods.h"
 #include "scenes/scene/scene.h"
 
 namespace palpate {
 namespace {
 
-constexpr std::array kMethods{"trend", "direct", "voxel", "random", "kdtree", "greedy"};
+const std::vector<const char*> kMethods = [] {
+  std::vector<const char*> names;
+  for (const Method* method : methods()) names.push_back(method->name);
+  return names;
+}();
 
 // What texts, curves and marks are drawn on.
 std::array<Rgb, 4> surfaces(Theme theme) {

@@ -25,9 +25,8 @@ The package loads ``libpalpate_fit``: the one named by the environment variable 
 put beside it, else that of the source tree's ``build`` when it is imported from there, else the installed one.
 """
 from ._library import Error, Sensor, library
-from ._models import Model, fit, load
+from ._models import Limiter, Model, Stream, fit, load
 from ._recordings import Recording, in_contact, jnd_N, make_recording, read_recording, within_jnd
-from ._streams import Limiter, Stream
 
 # Without Recording, whose help would be that of all numpy arrays.
 __all__ = ["Error", "Limiter", "Model", "Sensor", "Stream", "fit", "in_contact", "jnd_N", "load", "make_recording",
