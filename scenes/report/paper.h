@@ -54,11 +54,17 @@ struct FitTimes {
   std::vector<double> seconds;  // in the order of PaperMethod
   double solve_s = 0.0;         // of the interpolation, without its grid
 };
-// Processor time of the interpolant by the dimension of the domain; figure 2.
+// Processor time of a fit by the dimension of the domain; figure 2.
 struct DimensionTimes {
   std::size_t dimensions = 0;
-  double solve_s = 0.0;  // fit of the weights of all sites
-  double grid_s = 0.0;   // evaluation on 10 nodes per dimension
+  double solve_s = 0.0;   // of the weights of all sites
+  double grid_s = 0.0;    // evaluation on 10 nodes per dimension
+  double greedy_s = 0.0;  // greedy-20
+};
+// Processor time of one evaluation by the number of centres.
+struct CentreTimes {
+  std::size_t centres = 0;
+  double evaluation_s = 0.0;
 };
 
 struct PaperData {
@@ -67,6 +73,7 @@ struct PaperData {
   std::vector<PaperRun> runs;
   std::vector<FitTimes> by_sites;
   std::vector<DimensionTimes> by_dimension;
+  std::vector<CentreTimes> by_centres;
   // The largest ratio of the slowest to the fastest round of one measurement. Times are those of the fastest.
   double slowest_round = 1.0;
   std::vector<JndPoint> points;  // of the study, and of Pang, Tan & Durlach (1991)

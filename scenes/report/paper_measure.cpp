@@ -7,6 +7,7 @@
 #include "engine/tick/sensor_identification.h"
 #include "models/correction/methods.h"
 #include "models/fit/fit.h"
+#include "models/model/kernels.h"
 #include "scenes/evaluation/evaluate.h"
 #include "scenes/report/paper.h"
 #include "scenes/report/recordings.h"
@@ -29,6 +30,7 @@ constexpr std::uint64_t kMostSeeds = 3;  // of greedy-100
 // Rounds of a measured time; of long ones at least two.
 constexpr int kRounds = 4;
 constexpr double kLong_s = 1.0;
+constexpr Eigen::Index kTimedCentres[] = {500, 1000, 2000};
 // The range of the selection (models/fit/open_choices.cpp).
 constexpr double kRangeExponents[] = {0.5, 1.0};
 constexpr double kTruncations[] = {1e-14, 1e-9, 1e-5};
@@ -126,6 +128,7 @@ class PaperMeasurement {
       if (data_.runs.empty()) {
         if (const Status status = time_sites(*prepared); !status) return status;
         if (const Status status = time_dimensions(train); !status) return status;
+        if (const Status status = time_centres(prepared->sites); !status) return status;
       }
       const auto exchanged = prepare(test, training_scene(scene_), fitted);
       if (!exchanged) return exchanged.error();
@@ -252,7 +255,32 @@ class PaperMeasurement {
       if (!solved) return solved.error();
       const auto grid = fastest([&] { return fit_correction(kVoxelMethod, asked, part()); });
       if (!grid) return grid.error();
-      data_.by_dimension.push_back({d, *solved, *grid});
+      prepared->sites.kernel = centres_->kernel;
+      prepared->sites.truncation = centres_->truncation;
+      const MethodTask greedy{prepared->sites, jnd_N, 100, 20};
+      const auto selected = fastest([&] { return fit_correction(kGreedyMethod, greedy, part()); });
+      if (!selected) return selected.error();
+      data_.by_dimension.push_back({d, *solved, *grid, *selected});
+    }
+    return {};
+  }
+
+  // An evaluation does not depend on the weights.
+  Status time_centres(const Sites& sites) {
+    Eigen::VectorXd forces_N;
+    for (const Eigen::Index centres : kTimedCentres) {
+      RbfFunction function;
+      function.centres = sites.points.leftCols(std::min(centres, sites.count()));
+      function.weights = Eigen::VectorXd::Ones(function.centre_count());
+      function.tail = Eigen::VectorXd::Zero(tail_size(tail_degree(function.kernel), function.dimension()));
+      const RbfCorrection correction(std::move(function));
+      const auto seconds = fastest([&]() -> Result<bool> {
+        correction.evaluate_many(sites.points, forces_N);
+        return true;
+      });
+      if (!seconds) return seconds.error();
+      data_.by_centres.push_back(
+          {static_cast<std::size_t>(correction.size()), *seconds / static_cast<double>(sites.count())});
     }
     return {};
   }
