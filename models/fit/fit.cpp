@@ -53,6 +53,7 @@ struct TrendFit {
   TrendColumns columns;
   FittedTrend fitted;
   Eigen::MatrixXd left_out;  // the weights of the trends fitted without each fold
+  double smoothness = 0.0;
 };
 
 Result<TrendFit> fit_trend(const Samples& samples, FeatureList list, const JndLine& jnd, bool selects,
@@ -65,7 +66,7 @@ Result<TrendFit> fit_trend(const Samples& samples, FeatureList list, const JndLi
   const Eigen::VectorXd x = estimator.fit(estimator.all_columns());
   if (selects) add_gains(gains, *columns, estimator, left_out, x);
   FittedTrend fitted = fitted_trend(*columns, x, !selects);
-  return TrendFit{std::move(*columns), std::move(fitted), left_out.solutions};
+  return TrendFit{std::move(*columns), std::move(fitted), left_out.solutions, estimator.smoothness()};
 }
 
 // Targets and factors of the sites, their cover, and the limit of the correction.
@@ -203,10 +204,18 @@ Result<PreparedTraining> prepare_training(SamplesPointer samples, const Training
   finish_sites(prepared, plan);
   if (!control.may_continue(0.7)) return interrupted();
   if (trend) {
-    prepared.left_out = residual_rows(common, trend->columns, prepared.features, trend->left_out);
-    prepared.left_out->kernel = prepared.sites.kernel;
-    const CorrectionChoice choice = choose_correction(*prepared.left_out, common);
+    ResidualRows rows = residual_rows(common, trend->columns, prepared.features, trend->left_out);
+    rows.kernel = prepared.sites.kernel;
+    const CorrectionChoice choice = choose_correction(rows, common);
     prepared.correction = choice;
+    trend->columns.leave_out_units();
+    if (table.offsets.size() < 3 && trend->columns.folds() > 1) {  // else they are the folds, or there is one
+      const TrendEstimator estimator(trend->columns, scene.jnd, trend->smoothness);
+      rows = residual_rows(common, trend->columns, prepared.features,
+                           estimator.cross_validate(estimator.all_columns()).solutions);
+      rows.kernel = prepared.sites.kernel;
+    }
+    if (trend->columns.folds() > 1) prepared.left_out = std::move(rows);
     prepared.sites.smoothing = choice.smoothing;
     const double outer_to_inner = common.cover.outer_radius / common.cover.inner_radius;
     common.cover.inner_radius = choice.inner_radius;
@@ -243,7 +252,6 @@ Result<MethodFit> fit_method(const PreparedTraining& prepared, const ModelPlan& 
     }
     if (!selected) return selected.error();
     fit.choices = *selected;
-    fit.error_over_jnd = selected->error_over_jnd;
     sites = chosen_sites(*selected, prepared, data);
     fit.notes.push_back(choices_text(*selected, asked.method->can_take(kTakesKernel)));
   }
@@ -280,10 +288,7 @@ Result<MethodFit> fit_method(const PreparedTraining& prepared, const ModelPlan& 
       if (!of_fold) return of_fold.error();
       of_folds.push_back(std::move(*of_fold));
     }
-    FoldErrors errors;
-    const auto predictions = predictions_of(*prepared.left_out, data, of_folds, errors);
-    fit.error_over_jnd = errors.rms_at_mean_score();
-    data.error_bound = fit_bound(predictions, data, prepared.left_out->strokes);
+    data.error_bound = fit_bound(predictions_of(*prepared.left_out, data, of_folds), data);
   }
   if (const Status valid = check_forces(data); !valid) {
     return Error{"the " + data.name + " fit did not give a usable model (" + valid.error().message +

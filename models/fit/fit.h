@@ -40,7 +40,7 @@ struct PreparedTraining {
   ModelData common;                            // the parts of the model that all methods have in common
   std::vector<PartGain> gains;                 // of each term of the dictionary; empty unless the features are selected
   std::optional<CorrectionChoice> correction;  // of the residual of the trend; none with Base::force
-  std::optional<ResidualRows> left_out;        // rows for cross-validation; none with Base::force
+  std::optional<ResidualRows> left_out;        // by units; none of a single one, or with Base::force
 
   // False if cross-validation rejected the correction; every method then returns the trend.
   bool corrects() const { return !correction || correction->used; }
@@ -51,7 +51,6 @@ struct MethodFit {
   std::vector<std::string> notes;        // sentences for the user
   std::optional<KernelKind> kernel{};    // of a method that takes one
   std::optional<OpenChoices> choices{};  // with Base::force
-  double error_over_jnd = 0.0;           // cross-validated (FoldErrors::rms_at_mean_score)
   Eigen::Index rank = 0;                 // as in FittedCorrection
   double condition_number = 0.0;
 };

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
+#include <map>
 #include <numeric>
 
 #include "engine/base/parallel.h"
@@ -22,6 +24,7 @@ constexpr Eigen::Index kCentres = 200;
 constexpr int kLowestDecade = -9;  // of the smoothing, relative to the mean eigenvalue
 constexpr int kHighestDecade = 1;
 constexpr std::array kRadiusFactors{1.0, 2.0, 4.0, 8.0};
+constexpr std::size_t kLeastOfPhase = 5;  // rows; fewer do not show the error of a phase
 
 Eigen::MatrixXd random_centres(const Eigen::MatrixXd& points) {
   std::vector<Eigen::Index> order(static_cast<std::size_t>(points.cols()));
@@ -109,6 +112,32 @@ class LeftOutFits {
   std::vector<Fold> folds_;
 };
 
+// The index, in ascending order, of the one of `count` exchangeable values that covers the next with this probability;
+// the largest where none does.
+std::size_t conformal_rank(std::size_t count, double probability) {
+  const double rank = std::ceil((static_cast<double>(count) + 1.0) * probability);
+  return std::min(count, static_cast<std::size_t>(rank)) - 1;
+}
+
+// The factor of the bound that covers 95 % of the rows of a unit, in order of time, and of each of its phases.
+double factor_of(std::vector<Prediction> rows, const ErrorBound& bound) {
+  const auto quantile_of_first = [&](std::size_t count) {
+    std::vector<double> ratios;
+    for (std::size_t i = 0; i < count; ++i)
+      ratios.push_back(rows[i].error_N / bound.at(rows[i].predicted_N, rows[i].beyond));
+    return nth_smallest(std::move(ratios), conformal_rank(count, 0.95));
+  };
+  double factor = quantile_of_first(rows.size());
+  const std::size_t tenth = rows.size() / 10;
+  if (tenth < kLeastOfPhase) return factor;
+  factor = std::max(factor, quantile_of_first(tenth));
+  for (double Prediction::*const phase : {&Prediction::depth_m, &Prediction::speed_m_per_s}) {
+    std::ranges::stable_sort(rows, std::ranges::greater{}, phase);
+    factor = std::max(factor, quantile_of_first(tenth));
+  }
+  return factor;
+}
+
 }  // namespace
 
 std::vector<Eigen::Index> ResidualRows::outside(int without) const {
@@ -162,7 +191,9 @@ ResidualRows residual_rows(const ModelData& common, const TrendColumns& columns,
   const auto n = static_cast<Eigen::Index>(order.size());
   ResidualRows out;
   out.points.resize(features.rows(), n);
-  for (Eigen::VectorXd* values : {&out.force_N, &out.depth_m, &out.row_scale}) values->resize(n);
+  for (Eigen::VectorXd* values :
+       {&out.force_N, &out.depth_m, &out.row_scale, &out.speed_m_per_s, &out.moved_N, &out.moved_error_N})
+    values->resize(n);
   out.trend_N.resize(n, left_out_trends.cols());
   for (Eigen::Index k = 0; k < n; ++k) {
     const std::size_t row = order[static_cast<std::size_t>(k)];
@@ -173,17 +204,26 @@ ResidualRows residual_rows(const ModelData& common, const TrendColumns& columns,
     out.row_scale(k) = 1.0 / common.jnd.at(out.force_N(k));
     out.trend_N.row(k) = columns.terms().row(static_cast<Eigen::Index>(row)) * left_out_trends;
     out.fold.push_back(columns.fold(row));
+    out.unit.push_back(columns.unit(row));
+    const std::size_t sample = columns.rows()[row];
+    out.speed_m_per_s(k) = std::abs(columns.samples().rows[sample].motion.velocity_m_per_s);
+    const RecordingOffset& offset =
+        columns.samples().offsets[static_cast<std::size_t>(columns.samples().recording[sample])];
+    const auto elastic_N = [&](double by_m) {
+      return common.trend.elastic.at(std::max(0.0, out.depth_m(k) + by_m) / common.trend.reference_depth_m);
+    };
+    out.moved_N(k) = elastic_N(offset.offset_m) - elastic_N(0.0) - offset.force_zero_N;
+    const bool known = std::isfinite(offset.standard_error_m);
+    out.moved_error_N(k) = known ? elastic_N(offset.standard_error_m) - elastic_N(0.0) : 0.0;
     out.no_force.push_back(std::abs(out.force_N(k)) <= no_force_N ? 1 : 0);
   }
-  out.strokes = columns.samples().strokes;
   out.find_distances();
   return out;
 }
 
 std::vector<Prediction> predictions_of(const ResidualRows& rows, const ModelData& common,
-                                       const std::vector<CorrectionPtr>& corrections, FoldErrors& errors) {
+                                       const std::vector<CorrectionPtr>& corrections) {
   const double inner_radius = common.cover.inner_radius;
-  errors = FoldErrors(static_cast<std::size_t>(rows.folds()));
   std::vector<Prediction> predictions;
   for (std::size_t i = 0; i < rows.fold.size(); ++i) {
     if (!std::isfinite(rows.distance[i])) continue;  // there is no other fold
@@ -194,17 +234,17 @@ std::vector<Prediction> predictions_of(const ResidualRows& rows, const ModelData
       correction_N = corrections[static_cast<std::size_t>(rows.fold[i])]->evaluate(point.data());
     }
     const double force_N = rows.predicted_N(common, i, inner_radius, correction_N);
-    const double error = common.jnd.error_over_jnd(force_N, rows.force_N(row));
-    errors.add(static_cast<std::size_t>(rows.fold[i]), error * robust_scale(error));
-    predictions.push_back(
-        {std::abs(force_N - rows.force_N(row)), force_N, std::max(0.0, rows.distance[i] - inner_radius)});
+    const double error_N = std::abs(force_N + rows.moved_N(row) - rows.force_N(row)) + rows.moved_error_N(row);
+    predictions.push_back({error_N, force_N, std::max(0.0, rows.distance[i] - inner_radius), rows.unit[i],
+                           rows.depth_m(row), rows.speed_m_per_s(row)});
   }
   return predictions;
 }
 
-std::optional<ErrorBound> fit_bound(const std::vector<Prediction>& predictions, const ModelData& common,
-                                    std::size_t strokes) {
-  if (predictions.size() < 50) return std::nullopt;
+std::optional<ErrorBound> fit_bound(const std::vector<Prediction>& predictions, const ModelData& common) {
+  std::map<int, std::vector<Prediction>> units;
+  for (const Prediction& one : predictions) units[one.unit].push_back(one);
+  if (predictions.size() < 50 || units.size() < 2) return std::nullopt;
   Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(3, 3);
   Eigen::VectorXd right = Eigen::VectorXd::Zero(3);
   for (const Prediction& one : predictions) {
@@ -217,17 +257,12 @@ std::optional<ErrorBound> fit_bound(const std::vector<Prediction>& predictions, 
   const double least_per_distance_N = 0.25 * common.largest_force_N;
   // Above 0, so that the factor enlarges it.
   ErrorBound bound{std::max(shape(0), 1e-3), shape(1), std::max(shape(2), least_per_distance_N)};
-  std::vector<double> ratios;
-  for (const Prediction& one : predictions) ratios.push_back(one.error_N / bound.at(one.predicted_N, one.beyond));
-  // The smallest factor that covers ceil((n + 1) 97.5 %) of them.
-  const auto n = static_cast<double>(ratios.size());
-  const auto rank = std::min(ratios.size() - 1, static_cast<std::size_t>(std::ceil((n + 1.0) * 0.975)) - 1);
-  const double factor = nth_smallest(std::move(ratios), rank);
+  std::vector<double> factors;
+  for (auto& [unit, rows] : units) factors.push_back(factor_of(std::move(rows), bound));
+  const double factor = nth_smallest(factors, conformal_rank(factors.size(), 0.9));
   bound.floor_N = std::max(factor * bound.floor_N, kForceFloor_N);
-  // One or two strokes do not show how the next one differs. 5 % of the force is the difference between two specimens
-  // of a cast silicone (Dawood et al. 2026).
-  bound.per_force = std::max(factor * bound.per_force, strokes < 3 ? 0.05 : 0.0);
-  // One unit beyond the data nothing is known but the range of the force.
+  bound.per_force *= factor;
+  // One unit of distance beyond the data nothing is known but the range of the force.
   bound.per_distance_N = std::clamp(factor * bound.per_distance_N, least_per_distance_N,
                                     std::max(least_per_distance_N, common.largest_force_N));
   return bound;

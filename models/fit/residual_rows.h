@@ -1,6 +1,6 @@
 // Rows of samples in contact, each with the trend that was fitted without its fold (models/samples/cross_validation.h),
-// and what is fitted to them: the choice of the correction, and the error bound. Thread guarantee: slow side, value
-// types and pure functions.
+// and what is fitted to them: the choice of the correction and, to folds of whole units, the error bound. Thread
+// guarantee: slow side, value types and pure functions.
 #pragma once
 
 #include <Eigen/Core>
@@ -24,7 +24,11 @@ struct ResidualRows {
   std::vector<int> fold;
   std::vector<char> no_force;    // no measured force: the force is not positive
   std::vector<double> distance;  // to the nearest row of another fold; infinite if there is none
-  std::size_t strokes = 0;       // of all recordings
+  std::vector<int> unit;
+  Eigen::VectorXd speed_m_per_s;
+  // What is added to the error of a prediction where the recording is taken as recorded: the change of the elastic
+  // response by the offset of its position, less its force zero; and the uncertainty of the offset, >= 0.
+  Eigen::VectorXd moved_N, moved_error_N;
   KernelKind kernel = KernelKind::cubic;
 
   int folds() const { return static_cast<int>(trend_N.cols()); }
@@ -49,21 +53,25 @@ struct ResidualRows {
 ResidualRows residual_rows(const ModelData& common, const TrendColumns& columns, const Eigen::MatrixXd& features,
                            const Eigen::MatrixXd& left_out_trends);
 
-// The prediction of a row by a model that was fitted without its fold. `beyond`: its distance to the nearest row of
-// another fold, beyond the inner radius.
+// The prediction of a row, as recorded, by a model that was fitted without its fold. `beyond`: its distance to the
+// nearest row of another fold, beyond the inner radius.
 struct Prediction {
   double error_N = 0.0, predicted_N = 0.0, beyond = 0.0;
+  int unit = 0;
+  double depth_m = 0.0, speed_m_per_s = 0.0;
 };
-// Of all rows that have another fold. `corrections`: fitted to the sites without each fold; empty: none, the errors are
-// those of the trend. `errors`: receives the errors by fold.
+// Of all rows that have another fold, those of a unit in order of time. `corrections`: fitted to the sites without each
+// fold; empty: none, the errors are those of the trend.
 std::vector<Prediction> predictions_of(const ResidualRows& rows, const ModelData& common,
-                                       const std::vector<CorrectionPtr>& corrections, FoldErrors& errors);
-// Fits the error bound of a model (models/model/fitted_model.h) to cross-validated errors: non-negative least squares
-// with rows scaled by 1 / JND, then all coefficients times the quantile of error over bound that covers 97.5 % of the
-// rows. The floor is at least kForceFloor_N: without it the coverage was 77 to 90 % on skin and 83 % on one trial of
-// silicone, with it 97 to 100 %. `common`: with the JND and the largest force. Empty with fewer than 50 predictions.
-std::optional<ErrorBound> fit_bound(const std::vector<Prediction>& predictions, const ModelData& common,
-                                    std::size_t strokes);
+                                       const std::vector<CorrectionPtr>& corrections);
+// Fits the error bound of a model (models/model/fitted_model.h): non-negative least squares with rows scaled by 1 /
+// JND, then all coefficients times a quantile over units of the factor that each needs: the largest of the 95 %
+// quantiles of its error over the bound among all its rows and the first, the deepest and the fastest tenth of them.
+// Units, unlike rows, are exchangeable if the next recording is made like these, so that a new one needs at most this
+// factor with a probability of 9 in 10 (Lei et al. 2018, section 2.2) or, with K < 9 of them, K / (K + 1). The floor is
+// at least kForceFloor_N. `common`: with the JND and the largest force. None with fewer than 50 predictions or two
+// units: one does not show how the next one differs.
+std::optional<ErrorBound> fit_bound(const std::vector<Prediction>& predictions, const ModelData& common);
 
 struct CorrectionChoice {
   bool used = false;

@@ -52,10 +52,9 @@ struct Provenance {
 // The bound on the error of a model's force where no force is measured, at 95 %:
 //   bound(x) = floor + per_force |f(x)| + per_distance max(0, distance(x) - inner radius) >= |model - material|
 // distance: to the nearest training data in the normalised feature space (domain_guard.h). The coefficients are fitted
-// to cross-validated errors and scaled by a quantile of the errors over the bound (models/fit/residual_rows.h). This
-// resembles cross-conformal prediction, but has no guarantee: neighbouring samples are not exchangeable.
-// Sources: Vovk (2015), "Cross-conformal predictors"; Lei, G'Sell, Rinaldo, Tibshirani & Wasserman (2018), section 5.2
-// (locally weighted).
+// to errors of whole recordings or presses that were left out, and scaled by a quantile over these
+// (models/fit/residual_rows.h). Sources: Vovk (2015), "Cross-conformal predictors"; Lei, G'Sell, Rinaldo, Tibshirani &
+// Wasserman (2018), section 5.2 (locally weighted).
 struct ErrorBound {
   double floor_N = 0.0, per_force = 0.0, per_distance_N = 0.0;
 
@@ -90,7 +89,7 @@ struct ModelData : Normalisation {
   // that it steps there, and the model is out of its domain above the recorded depths.
   double surface_step_N = 0.0;
   DomainCover cover;
-  std::optional<ErrorBound> error_bound;  // none of a fit to the measured force
+  std::optional<ErrorBound> error_bound;  // none of a fit to the measured force, or to a single press
   // The position sensor of the training recordings, the coarsest of them: the default sensor of streams and exported
   // files; no effect on the force of a feature vector. None: not known.
   std::optional<SensorSpec> sensor;

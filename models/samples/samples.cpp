@@ -147,6 +147,29 @@ void split_into_folds(Samples& samples) {
   }
 }
 
+void find_units(Samples& samples) {
+  samples.unit = samples.recording;
+  samples.units = static_cast<int>(samples.offsets.size());
+  if (samples.units > 1) return;
+  std::vector<double> depth_m;
+  for (const Sample& row : samples.rows) depth_m.push_back(std::max(0.0, row.motion.position_m));
+  const auto [lowest, highest] = std::ranges::minmax(depth_m);
+  const double half_m = 0.5 * (highest - lowest);
+  bool inward = true;
+  std::size_t extreme = 0;  // the row of the last extreme position in this direction
+  for (std::size_t i = 0; i < depth_m.size(); ++i) {
+    const double away_m = inward ? depth_m[extreme] - depth_m[i] : depth_m[i] - depth_m[extreme];
+    samples.unit[i] = samples.units - 1;
+    if (away_m > half_m) {
+      inward = !inward;
+      if (inward)
+        std::fill(samples.unit.begin() + static_cast<std::ptrdiff_t>(extreme),
+                  samples.unit.begin() + static_cast<std::ptrdiff_t>(i) + 1, samples.units++);
+    }
+    if (away_m <= 0.0 || away_m > half_m) extreme = i;
+  }
+}
+
 }  // namespace
 
 double Samples::no_force_N() const {
@@ -196,6 +219,7 @@ Result<Samples> make_samples(std::vector<PreparedRecordingPointer> recordings, c
   for (const Sample& row : samples.rows) forces_N.push_back(row.force_N);
   samples.always_N = nth_smallest(std::move(forces_N), samples.rows.size() / 1000);
   split_into_folds(samples);
+  find_units(samples);
   return samples;
 }
 

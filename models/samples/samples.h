@@ -36,6 +36,10 @@ struct Samples {
   std::vector<int> stroke;     // number of the contact, counted over all recordings; 0 before the first
   std::vector<int> fold;
   int folds = 1;
+  // Repetitions, of which one is left out as a whole where the error of a new recording is estimated: the recordings,
+  // or the presses of a single one, each from the lowest position before a rise by half of the range.
+  std::vector<int> unit;
+  int units = 1;
 
   std::vector<RecordingOffset> offsets;  // one for each recording
   double surface_m = 0.0;                // of the table, in positions as recorded

@@ -10,6 +10,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -73,7 +74,11 @@ class TrendColumns {
   std::size_t stride() const { return stride_; }
   double force_N(std::size_t row) const { return samples_->rows[rows_[row]].force_N; }
   double depth_m(std::size_t row) const { return samples_->rows[rows_[row]].motion.position_m; }
-  int fold(std::size_t row) const { return samples_->fold[rows_[row]]; }
+  // The division of the rows for cross-validation: the folds of the samples or, after leave_out_units(), their units.
+  int fold(std::size_t row) const { return by_unit_ ? unit(row) % folds() : samples_->fold[rows_[row]]; }
+  int folds() const { return by_unit_ ? std::min(samples_->units, kMostUnitFolds) : samples_->folds; }
+  int unit(std::size_t row) const { return samples_->unit[rows_[row]]; }
+  void leave_out_units() { by_unit_ = true; }
 
   const Matrix& terms() const { return terms_; }
   Eigen::Index columns() const { return terms_.cols(); }
@@ -89,7 +94,10 @@ class TrendColumns {
   }
 
  private:
+  static constexpr int kMostUnitFolds = 6;
+
   const Samples* samples_ = nullptr;
+  bool by_unit_ = false;
   FeatureList list_;
   std::size_t stride_ = 1;
   std::vector<std::size_t> rows_;

@@ -16,7 +16,6 @@ namespace {
 constexpr int kPasses = 4;
 // The candidates for lambda: 1e-6 smooths over a third of the depth, 1e-9 over two pieces.
 constexpr std::array kSmoothness{1e-6, 1e-7, 1e-8, 1e-9};
-constexpr double kFirstSmoothness = 1e-8;
 
 // The trends of some solutions at the rows: rows x solutions.
 Eigen::MatrixXd values_of(const TrendColumns& columns, const Eigen::MatrixXd& solutions) {
@@ -57,23 +56,23 @@ FeatureList with_slowing(FeatureList list, double slowing) {
 
 }  // namespace
 
-TrendEstimator::TrendEstimator(const TrendColumns& columns, const JndLine& jnd, Smoothness smoothness)
+TrendEstimator::TrendEstimator(const TrendColumns& columns, const JndLine& jnd, double smoothness)
     : columns_(columns),
       jnd_(jnd),
       part_error_(has_kind(columns.list().features, FeatureKind::creep) ? kPartError : kPartErrorOfFew),
-      smoothness_(kFirstSmoothness),
-      equations_(static_cast<std::size_t>(columns.samples().folds) + 1) {
+      smoothness_(smoothness),
+      equations_(static_cast<std::size_t>(columns.folds()) + 1) {
   std::vector<int> fold;
   std::vector<double> depth_m;
   for (std::size_t i = 0; i < columns.count(); ++i) {
     fold.push_back(columns.fold(i));
     depth_m.push_back(columns.depth_m(i));
   }
-  const int folds = columns.samples().folds;
+  const int folds = columns.folds();
   deepest_elsewhere_m_ = deepest_elsewhere_m(fold, depth_m, folds);
   const BlasThreads one_thread(1);
   parallel_for(folds + 1, [&](int k) { equations_[static_cast<std::size_t>(k)] = gather(k); });
-  if (smoothness == Smoothness::fixed) return;
+  if (smoothness > 0.0) return;
   std::vector<FoldErrors> errors(kSmoothness.size());
   parallel_for(static_cast<int>(kSmoothness.size()), [&](int i) {
     const auto at = static_cast<std::size_t>(i);
@@ -153,7 +152,7 @@ Eigen::VectorXd TrendEstimator::solve(const Equations& equations, const ColumnLi
 }
 
 CrossValidated TrendEstimator::cross_validate(const ColumnList& columns, double smoothness) const {
-  const int folds = columns_.samples().folds;
+  const int folds = columns_.folds();
   CrossValidated result{static_cast<std::size_t>(folds), Eigen::MatrixXd(columns_.terms().cols(), folds)};
   for (int k = 0; k < folds; ++k)
     result.solutions.col(k) = solve(equations_[static_cast<std::size_t>(k)], columns, smoothness);
@@ -177,7 +176,7 @@ Result<FeatureList> select_slowing(const Samples& samples, const JndLine& jnd, c
   for (const double slowing : kSlowings) {
     const auto columns = TrendColumns::make(few, with_slowing(shortened(list), slowing), kSearchRows, control);
     if (!columns) return columns.error();
-    const TrendEstimator estimator(*columns, jnd, TrendEstimator::Smoothness::fixed);
+    const TrendEstimator estimator(*columns, jnd, TrendEstimator::kFirstSmoothness);
     errors.push_back(estimator.cross_validate(estimator.all_columns()).errors);
   }
   const std::size_t chosen = simplest_adequate(errors);
@@ -198,7 +197,7 @@ Result<std::vector<double>> identify_relaxation(const Samples& samples, const Jn
   }
   const auto rows = TrendColumns::make(samples, single_times(velocity, candidates_s), kSearchRows, control);
   if (!rows) return rows.error();
-  const TrendEstimator estimator(*rows, jnd, TrendEstimator::Smoothness::fixed);
+  const TrendEstimator estimator(*rows, jnd, TrendEstimator::kFirstSmoothness);
   const auto candidates = static_cast<int>(candidates_s.size());
   const int first = static_cast<int>(rows->list().features.size()) - candidates;
   std::vector<int> best;  // indices of the candidates, ascending

@@ -34,16 +34,18 @@ struct CrossValidated {
 
 class TrendEstimator {
  public:
-  enum class Smoothness { selected, fixed };
+  // lambda, for comparisons of many regressions.
+  static constexpr double kFirstSmoothness = 1e-8;
 
-  // `fixed`: lambda is 1e-8, for comparisons of many regressions.
-  TrendEstimator(const TrendColumns& columns, const JndLine& jnd, Smoothness smoothness = Smoothness::selected);
+  // `smoothness`: lambda; 0: selected.
+  TrendEstimator(const TrendColumns& columns, const JndLine& jnd, double smoothness = 0.0);
 
   // Errors of the trend with these columns (ascending). Rows deeper than all rows of the other folds do not count:
   // they would be extrapolated.
   CrossValidated cross_validate(const ColumnList& columns) const { return cross_validate(columns, smoothness_); }
   // The weights fitted to all rows, one for each column of the rows; 0 outside `columns`.
   Eigen::VectorXd fit(const ColumnList& columns) const { return solve(equations_.back(), columns, smoothness_); }
+  double smoothness() const { return smoothness_; }
   ColumnList all_columns() const {
     return columns_.columns_of([](std::size_t) { return true; });
   }

@@ -128,6 +128,10 @@ void print_fit(const PreparedTraining& prepared, const MethodFit& fit, double se
   const Provenance& provenance = fit.data.provenance;
   print_gains(prepared.gains);
   print_line("model", fit.data.name + ", fitted in " + fixed(seconds, 2) + " s");
+  if (const RbfFunction* const rbf = rbf_of(fit.data.correction); rbf != nullptr && fit.rank > 0) {
+    print_line("centres", std::to_string(rbf->centre_count()) + ", rank " + std::to_string(fit.rank) + " of " +
+                              std::to_string(rbf->centre_count() + rbf->tail.size()) + " columns");
+  }
   print_line("samples", std::to_string(provenance.samples) + ", " + std::to_string(provenance.contact_samples) +
                             " in contact, " + std::to_string(provenance.samples_after_reduction) + " after thinning");
   for (const RecordingOffset& surface : provenance.offsets) print_line("surface", surface_text(surface));

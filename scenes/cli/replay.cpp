@@ -108,11 +108,13 @@ OrderedJson model_json(const ReplayedModel& replayed) {
   add_figures(object["surface_moved"], replayed.surface_moved);
   object["surface_offset_m"] = replayed.surface.at;
   object["surface_identified"] = replayed.surface.identified;
-  // JSON has null for NaN.
-  object["predicted_error"] = {{"bound_95_held", replayed.bound.coverage},
-                               {"bound_95_held_moved", replayed.bound_moved.coverage},
-                               {"median_bound_N", replayed.bound.median_N},
-                               {"median_bound_over_jnd", replayed.bound.median_over_jnd}};
+  object["predicted_error"] = nullptr;
+  if (replayed.bound.has_bounds()) {  // JSON has null for NaN
+    object["predicted_error"] = {{"bound_95_held", replayed.bound.coverage},
+                                 {"bound_95_held_moved", replayed.bound_moved.coverage},
+                                 {"median_bound_N", replayed.bound.median_N},
+                                 {"median_bound_over_jnd", replayed.bound.median_over_jnd}};
+  }
   object["bins"] = bins_json(replayed.as_recorded.bins);
   return object;
 }

@@ -167,7 +167,8 @@ UnitErrors ModelErrors::unit_errors() const {
 }
 
 BoundFigures ModelErrors::bounds() const {
-  if (bounds_N_.empty()) return {};
+  // Outside its surface a model returns 0 N with certainty, whether it has a bound or not.
+  if (std::ranges::none_of(bounds_N_, [](float bound_N) { return bound_N > 0.0F; })) return {};
   const std::size_t middle = bounds_N_.size() / 2;
   const double median_N = ranked(bounds_N_, middle);
   return {static_cast<double>(covered_) / static_cast<double>(bounds_N_.size()), median_N,

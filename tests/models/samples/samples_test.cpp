@@ -224,6 +224,22 @@ TEST(Samples, ALongStrokeIsCutIntoPiecesOfEveryFold) {
   EXPECT_EQ(pieces_of(samples_of({inwards})), std::pair(std::size_t{5}, 50)) << "without unloading";
 }
 
+// Presses by half of the range are units, in air or in contact; recordings where there are several.
+TEST(Samples, UnitsArePressesOrRecordings) {
+  EXPECT_EQ(samples_of({presses(4)}).units, 4);
+  const Samples alone = samples_of({strokes_in_contact(6)});
+  EXPECT_EQ(alone.units, 6);
+  EXPECT_EQ(alone.unit.back(), 5);
+  for (std::size_t i = 1; i < alone.unit.size(); ++i) {
+    if (alone.unit[i] == alone.unit[i - 1]) continue;
+    EXPECT_EQ(alone.unit[i], alone.unit[i - 1] + 1);
+    EXPECT_LT(alone.rows[i].motion.position_m, 1.2e-3) << "at the lowest position";
+  }
+  const Samples both = samples_of({presses(4), strokes_in_contact(6)});
+  EXPECT_EQ(both.units, 2);
+  EXPECT_EQ(both.unit, both.recording);
+}
+
 // Air between the strokes, of any length, does not change the folds.
 TEST(Samples, FreeAirDoesNotChangeTheFolds) {
   Recording longer = presses(8);

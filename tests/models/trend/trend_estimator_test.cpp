@@ -130,8 +130,8 @@ TEST(TrendEstimator, AFoldThatIsLeftOutHasNoInfluence) {
   const Samples larger = samples_with(30.0);
   const TrendColumns one = columns_of(same);
   const TrendColumns other = columns_of(larger);
-  const TrendEstimator first(one, {}, TrendEstimator::Smoothness::fixed);
-  const TrendEstimator second(other, {}, TrendEstimator::Smoothness::fixed);
+  const TrendEstimator first(one, {}, TrendEstimator::kFirstSmoothness);
+  const TrendEstimator second(other, {}, TrendEstimator::kFirstSmoothness);
   const CrossValidated a = first.cross_validate(first.all_columns());
   const CrossValidated b = second.cross_validate(second.all_columns());
   EXPECT_TRUE(a.solutions.col(0).isApprox(b.solutions.col(0), 1e-9));
