@@ -53,8 +53,7 @@ class HandOnLink {
   Rest run(double aim_m) {
     Rest result;
     double next_sample = 0.0, lowest_m = 1.0, highest_m = -1.0;
-    for (; step_ < 3 * kStepsPerS; ++step_) {
-      const double time_s = static_cast<double>(step_) / kStepsPerS;
+    for (double time_s = 0.0; time_s < 3.0; time_s = static_cast<double>(++step_) / kStepsPerS) {
       if (static_cast<double>(step_) >= next_sample) {
         next_sample += kStepsPerS / link_.rate_Hz;
         sample();
@@ -63,7 +62,7 @@ class HandOnLink {
       if (step_ % 20 == 0) tick();
       if (step_ % 10 == 5) send_command();
       const ClosedLoop::Drive drive = minimum_jerk(-2e-3, aim_m, 0.3, time_s);
-      const bool rest = step_ >= 2 * kStepsPerS;
+      const bool rest = time_s >= 2.0;
       move(drive, time_s >= 0.6 && time_s < 0.62 ? 1.0 : 0.0, rest ? &result.given_J : nullptr);
       if (!rest) continue;
       lowest_m = std::min(lowest_m, position_m_);
