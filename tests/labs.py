@@ -59,7 +59,6 @@ MORE = {
                      ["ecoflex_static/EF10_100T_test_A3", "ecoflex_static/EF10_100T_test_B2"]),
 }
 
-
 def run(palpate, *arguments):
     done = subprocess.run([palpate, *map(str, arguments)], stdout=subprocess.PIPE, stderr=subprocess.PIPE)
     if done.returncode != 0:
@@ -251,7 +250,7 @@ def by_rig(sets, results, model, figure):
     """For each rig the mean over its tests. `figure`: of a test, None where it is not known."""
     rigs = {}
     for one in sets:
-        for test in results[one.name, model].get("tests", []):
+        for test in results.get((one.name, model), {}).get("tests", []):
             if figure(test) is not None:
                 rigs.setdefault(one.rig, []).append(figure(test))
     return {rig: sum(values) / len(values) for rig, values in rigs.items()}
@@ -286,7 +285,8 @@ def table(sets, results, models):
     detailed = next((model for model in reversed(models) if model not in baselines.KINDS), models[-1])
     for one in sets:
         last = results[one.name, detailed]
-        lines.append(f"| {one.name} | " + ", ".join(f"{share_of_nothing(test):.1f}" for test in one.tests) + " | "
+        nothing = ", ".join(f"{share_of_nothing(test):.1f}" for test in one.tests)
+        lines.append(f"| {one.name} | {nothing} | "
                      + " | ".join(cells(results[one.name, model], share) for model in models) + " | "
                      + " | ".join(cells(last, lambda test, key=key, digits=digits: number(test[key], digits)) for key, digits in
                                   (("p99", ".2f"), ("worst", ".2f"), ("held", ".1f"), ("bound", ".2f")))
@@ -337,10 +337,10 @@ def hard(kinds, results, models):
         yield f"| {what} | " + " | ".join(value(known[model]) if known[model] else "" for model in models) + " |"
 
 
-def bounds(kinds, results, models):
+def bounds(kinds, results):
     for kind, sets in kinds.items():
         held = by_rig(sets, results, OURS, lambda test: test["held"])
-        if OURS in models and held:
+        if held:
             width = median([test["bound"] for one in sets for test in results[one.name, OURS].get("tests", [])])
             yield (f"{kind}: the 95 % bound of {OURS} covers {text(interval(list(held.values())))} % of the samples, mean of {len(held)}"
                    f" rigs that have one; least {min(held.values()):.1f} %; median width {number(width, '.2f')} JND.")
@@ -404,13 +404,19 @@ def main():
         kinds = {kind: sets for kind, sets in ((RECORDED, real), (VIRTUAL, made)) if sets}
         jobs = {(one.name, model): pool.submit(of_model, options, folder, one, model)
                 for one in real + made for model in options.models if f"{one.name}/{model}" not in kept}
-        results = {(one.name, model): jobs[one.name, model].result() if (one.name, model) in jobs else kept[f"{one.name}/{model}"]
-                   for one in real + made for model in options.models}
+        results = {}
+        for one in real + made:
+            for model in options.models:
+                key = f"{one.name}/{model}"
+                results[one.name, model] = jobs[one.name, model].result() if (one.name, model) in jobs else kept[key]
+                if options.baselines and model in baselines.KINDS:
+                    kept[key] = results[one.name, model]
+                    options.baselines.write_text(json.dumps(kept, indent=1))
         rows = table(real + made, results, options.models)
         summary = list(means(kinds, results, options.models))
         beyond = list(hard(kinds, results, options.models))
         sentences = [verdict(kind, sets, results, options.models) for kind, sets in kinds.items() if OURS in options.models]
-        sentences += bounds(kinds, results, options.models)
+        sentences += bounds(kinds, results)
         print("\n".join([*rows, "", *summary, "", *beyond, "", *sentences]))
         if options.write:
             front_page(options, folder, (rows, summary, beyond, sentences), kinds, results)
@@ -420,9 +426,6 @@ def main():
     saved = {"/".join(key): entry for key, entry in results.items()}
     if options.json:
         pathlib.Path(options.json).write_text(json.dumps(saved, indent=1))
-    if options.baselines:
-        mine = {key: entry for key, entry in saved.items() if key.split("/")[-1] in baselines.KINDS}
-        options.baselines.write_text(json.dumps({**kept, **mine}, indent=1))
     if options.against:
         compare(kinds, results, options.against)
 
