@@ -35,7 +35,7 @@ class Model(Handle):
 
     @property
     def report(self) -> Mapping[str, object]:
-        """The output of ``palpate fit --json`` for a model from `fit`; empty for one from `load`."""
+        """The output of ``palpate fit --json``; empty for a model from `load`."""
         return json.loads(library().palpate_model_report(self._handle) or b"{}")
 
     def render(self, time_s: ArrayLike, position_m: ArrayLike, velocity_m_per_s: ArrayLike | None = None,
@@ -55,21 +55,18 @@ class Model(Handle):
 
         Returns
         -------
-        force_N : ndarray, shape (n,)
-            0 out of contact, and at a sample that is not finite or not later than the last one. If that are more than
-            half of the samples, or their times are of a type with coarse steps, `Error` is raised.
-        bound_N : ndarray, shape (n,)
-            The 95 % bound on the error; 0 out of contact, NaN if the model has none.
+        force_N, bound_N : ndarray, shape (n,)
+            The force, 0 out of contact and at a sample that is not finite or not later than the last one (`Error` if
+            that are more than half of them, or their type has coarse steps), and the 95 % bound on its error, NaN if
+            the model has none.
         """
         return self._replay((time_s, position_m, velocity_m_per_s, acceleration_m_per_s2), sensor)[:2]
 
     def features(self, time_s: ArrayLike, position_m: ArrayLike, velocity_m_per_s: ArrayLike | None = None,
                  acceleration_m_per_s2: ArrayLike | None = None,
                  sensor: Sensor | float | None = None) -> NDArray[np.float64]:
-        """The feature vectors along a motion, out of contact too; SI units. Parameters as for `render`.
-
-        Returns an array of shape (n, d), one column for each of `feature_names`.
-        """
+        """The feature vectors along a motion, out of contact too: shape (n, d), a column for each of `feature_names`.
+        Parameters as for `render`."""
         return self._replay((time_s, position_m, velocity_m_per_s, acceleration_m_per_s2), sensor)[2]
 
     def _replay(self, columns, sensor):
@@ -173,15 +170,10 @@ def fit(recordings: object, method: str = "trend+greedy", centres: int | None = 
 
 
 class Stream(Handle):
-    """One tool in one material: palpate_stream of palpate.h. One thread at a time.
+    """One tool in one material: palpate_stream of palpate.h. One thread at a time. The model may be deleted before.
 
-    Parameters
-    ----------
-    model : Model
-        May be deleted before the stream.
-    sensor : Sensor or float, optional
-        A number is the step of an encoder [m]. 0, the default: the sensor of the model's recordings. Of exact
-        positions: ``Sensor()``.
+    `sensor`: a `Sensor`, or the step of an encoder [m]; 0, the default, is the sensor of the model's recordings, and
+    ``Sensor()`` that of exact positions.
     """
 
     def __init__(self, model: Model, sensor: Sensor | float = 0):
@@ -189,8 +181,8 @@ class Stream(Handle):
         super().__init__(new_stream(expect("model", model, Model)._handle, sensor), self._library.palpate_stream_free)
 
     def force(self, time_s: float, position_m: float) -> float:
-        """Takes the next sample and returns the force of the material [N]; 0 if the sample is refused (see `accepted`). For
-        a hand use `Limiter.render`."""
+        """Takes the next sample and returns the force of the material [N]; 0 if it is refused (`accepted`). For a hand
+        use `Limiter.render`."""
         return self._library.palpate_stream_force(self._handle, number("time_s", time_s),
                                                   number("position_m", position_m))
 
@@ -216,14 +208,9 @@ class Stream(Handle):
 class Limiter(Handle):
     """The stages before an actuator: palpate_limiter of palpate.h. One thread at a time.
 
-    Parameters
-    ----------
-    lag_s : float, optional
-        The lag of the force behind the motion, for `render`: transport, waits, half the time for which a force is held.
-        At least 1.5 times the interval between calls is assumed.
-    largest_N, fastest_N_per_s, ramp_s, continuous_N, thermal_time_s, stale_after_s, stop_s : float, optional
-        Fields of palpate_limits: peak [10], rate of change [2000], ramp after a start or a stop [0.3], thermal limit
-        [none], largest age of a sample [0.01], time of a stop [0.01].
+    `lag_s`: of the force behind the motion, for `render`: transport, waits, half the time for which a force is held.
+    The others are fields of palpate_limits: largest_N [10], fastest_N_per_s [2000], ramp_s after a start or a stop
+    [0.3], continuous_N [no thermal limit], thermal_time_s [10], stale_after_s [0.01], stop_s [0.01].
     """
 
     def __init__(self, *, lag_s: float = 0.0, **limits: float):

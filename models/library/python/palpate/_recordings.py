@@ -13,16 +13,11 @@ _JND_OFFSET_N, _JND_WEBER_FRACTION = 0.065, 0.0633
 
 
 class Recording(np.ndarray):
-    """A recording: a structured array, one row a sample, with a name.
+    """A recording: a structured array, one row a sample. Slices are recordings too.
 
     The fields are ``time_s``, ``position_m`` (along the inward normal, 0 at the undisturbed surface) and
     ``force_N`` (positive when the material pushes the tool out); ``velocity_m_per_s`` and
-    ``acceleration_m_per_s2`` where they were measured. Slices are recordings too.
-
-    Attributes
-    ----------
-    name : str
-        Kept in models that are fitted to it; of a file its name without folder and ending.
+    ``acceleration_m_per_s2`` where they were measured. Models keep its `name`, that of its file.
     """
 
     name: str = "recording"
@@ -83,11 +78,8 @@ def as_recording(given: object) -> Recording:
 
 
 def in_contact(position_m: ArrayLike, force_N: ArrayLike) -> NDArray[np.bool_]:
-    """Selects the samples of a recording that error figures are computed over, as ``palpate replay`` does.
-
-    A sample is in contact if its position is above 0, or its measured force is beyond both the JND at 0 N and
-    five times its noise.
-    """
+    """The samples over which ``palpate replay`` computes errors: a position above 0, or a measured force beyond both
+    the JND at 0 N and five times its noise."""
     recording = RecordingStruct.of({"position_m": position_m, "force_N": force_N})
     contact = np.empty(recording.size, np.bool_)
     library().palpate_in_contact(recording, contact.ctypes.data)
@@ -95,20 +87,11 @@ def in_contact(position_m: ArrayLike, force_N: ArrayLike) -> NDArray[np.bool_]:
 
 
 def within_jnd(force_N: ArrayLike, measured_N: ArrayLike, in_contact: ArrayLike | None = None) -> float:
-    """The share of the samples in contact with an error of at most one JND.
+    """The share of the samples in contact with an error of at most one JND, 0 to 1; NaN without contact.
 
-    Parameters
-    ----------
-    force_N, measured_N : array_like, shape (n,)
-        Forces of a model, and measured forces; finite.
-    in_contact : array_like of bool, shape (n,), optional
-        The samples in contact; `palpate.in_contact` gives those of ``palpate replay``. By default those
-        with a force of the model, or with a measured force above the JND at 0 N.
-
-    Returns
-    -------
-    float
-        0 to 1; NaN without a sample in contact.
+    Forces of a model, and measured forces, are of shape (n,) and finite. `in_contact` selects samples;
+    `palpate.in_contact` gives those of ``palpate replay``. By default those with a force of the model, or with a
+    measured force above the JND at 0 N.
     """
     force_N, measured_N = doubles("force_N", force_N), doubles("measured_N", measured_N)
     if force_N.shape != measured_N.shape:
