@@ -27,8 +27,15 @@ std::string feature_name(const FeatureSpec& spec) {
   return name.append(facts_of(spec.kind).unit);
 }
 
-FeaturePlan::FeaturePlan(const std::vector<FeatureSpec>& specs, double deepest_m)
-    : specs_(specs), surface_position_m_(palpate::surface_position_m(specs)), deepest_m_(deepest_m) {
+std::size_t memory_size(const std::vector<FeatureSpec>& specs) noexcept {
+  std::size_t size = 0;
+  for (const FeatureSpec& spec : specs) size += has_time(spec.kind) ? 1 : spec.part_count;
+  return size;
+}
+
+FeaturePlan::FeaturePlan(const std::vector<FeatureSpec>& specs, double deepest_m,
+                         const std::vector<RecordingEnds>& ends)
+    : specs_(specs), ends_(ends), surface_position_m_(palpate::surface_position_m(specs)), deepest_m_(deepest_m) {
   assert(!specs.empty() && specs.size() <= kMaxFeatures);
   for (std::size_t i = 0; i < specs_.size(); ++i) {
     const FeatureSpec& spec = specs_[i];
@@ -43,6 +50,48 @@ FeaturePlan::FeaturePlan(const std::vector<FeatureSpec>& specs, double deepest_m
   }
   for (std::size_t i = 0; i < specs_.size(); ++i)
     if (is_bristle(specs_[i].kind)) first_lane_[i] += kLanes * branches_.groups();
+}
+
+void FeaturePlan::each_memory(FeatureState& state, const auto& use) const {
+  for (std::size_t i = 0; i < specs_.size(); ++i) {
+    if (has_time(specs_[i].kind)) state.vector.values[i] = use(state.vector.values[i]);
+    for (std::size_t lane = first_lane_[i]; lane < first_lane_[i] + specs_[i].part_count; ++lane) {
+      V4& group = state.memory.value[lane / kLanes];
+      group[lane % kLanes] = use(group[lane % kLanes]);
+    }
+  }
+}
+
+std::vector<double> FeaturePlan::memory_of(const FeatureState& state) const {
+  std::vector<double> memory;
+  FeatureState same = state;
+  each_memory(same, [&](double value) {
+    memory.push_back(value);
+    return value;
+  });
+  return memory;
+}
+
+void FeaturePlan::begin(FeatureState& state, const ToolSample& sample) const noexcept {
+  state = {};
+  if (!in_contact(sample, surface_position_m_)) return;
+  double nearest_end_m = std::numeric_limits<double>::infinity(), nearest_beginning_m = nearest_end_m;
+  for (std::size_t i = 0; i < ends_.size(); ++i) {
+    nearest_beginning_m = std::min(nearest_beginning_m, std::abs(sample.position_m - ends_[i].first_position_m));
+    const double away_m = std::abs(sample.position_m - ends_[i].last_position_m);
+    if (!(away_m < nearest_end_m)) continue;
+    nearest_end_m = away_m;
+    state.began = static_cast<int>(i);
+  }
+  if (!(nearest_end_m < nearest_beginning_m)) {
+    state.began = kBeganAtRest;
+    return;
+  }
+  auto value = ends_[static_cast<std::size_t>(state.began)].memory.begin();
+  each_memory(state, [&](double) { return *value++; });
+  // Nothing happens between that end and this sample.
+  state.started = true;
+  state.time_s = sample.time_s;
 }
 
 void FeaturePlan::update(FeatureState& state, const ToolSample& sample, const MotionEstimate& motion) const noexcept {

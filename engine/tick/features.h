@@ -7,6 +7,8 @@
 //   maxwell_spectrum  sum of branches z                                     [N]
 //   stops, creep      sum of bristles                                       [N]
 // The tool is in contact beyond the depth feature's `surface_position_m`. In free air the material relaxes.
+// A stream begins at rest: nothing was pressed before. One that begins in contact, nearer to the end of a training
+// recording than to the beginning of any, continues that recording: it begins with the memory of that end.
 // Sources: Hoever & Harders (2009), eq. 1 (low-pass); Visintin (1994) (stops); Bergstrom & Boyce (1998) (creep);
 // Lai & Mow (1980) (slowing).
 // Thread guarantee: value types; `update` is wait-free, allocates nothing and never throws; one thread at a time.
@@ -80,6 +82,21 @@ double surface_position_m(const std::vector<FeatureSpec>& specs) noexcept;
 // Column name with unit, e.g. "feature_depth_m", "feature_lowpass_velocity_0.17s_m_per_s".
 std::string feature_name(const FeatureSpec& spec);
 
+// The beginning and the end of a training recording, in positions as recorded, and the memory of the features at the
+// end: in their order the value of a low-pass, N of each branch, m of each bristle.
+struct RecordingEnds {
+  double first_position_m = 0.0, last_position_m = 0.0;
+  std::vector<double> memory;
+
+  bool operator==(const RecordingEnds&) const = default;
+};
+// The number of values of such a memory.
+std::size_t memory_size(const std::vector<FeatureSpec>& specs) noexcept;
+
+// How a stream began; values of 0 and above are indices of the RecordingEnds that it continues.
+inline constexpr int kBeganAtRest = -1;
+inline constexpr int kBeganAsTold = -2;  // after a given motion (HapticsTick::start_after)
+
 struct FeatureVector {
   std::array<double, kMaxFeatures> values{};
   bool in_contact = false;  // by the raw position
@@ -91,6 +108,7 @@ struct alignas(sizeof(V4)) FeatureState {
   double depth_m = 0.0;  // at the last sample, at most the deepest of the plan
   double time_s = 0.0;
   bool started = false;
+  int began = kBeganAtRest;
   PartMemory memory{};
 };
 static_assert(std::is_trivially_copyable_v<FeatureState>);
@@ -102,12 +120,19 @@ class FeaturePlan {
   // `specs`: 1 to 8 features; relaxation times > 0. `deepest_m`: a greater depth enters the memory of the features as
   // this one, so that an error of the sensor, or a press far beyond the training data, is soon forgotten.
   explicit FeaturePlan(const std::vector<FeatureSpec>& specs,
-                       double deepest_m = std::numeric_limits<double>::infinity());
+                       double deepest_m = std::numeric_limits<double>::infinity(),
+                       const std::vector<RecordingEnds>& ends = {});
 
   const std::vector<FeatureSpec>& specs() const noexcept { return specs_; }
-  bool is_of(const std::vector<FeatureSpec>& specs, double deepest_m) const noexcept {
-    return deepest_m_ == deepest_m && specs_ == specs;
+  bool is_of(const std::vector<FeatureSpec>& specs, double deepest_m,
+             const std::vector<RecordingEnds>& ends) const noexcept {
+    return deepest_m_ == deepest_m && specs_ == specs && ends_ == ends;
   }
+
+  // Begins a stream whose first sample, the next to `update`, is this one.
+  void begin(FeatureState& state, const ToolSample& sample) const noexcept;
+  // The memory of a state, as in RecordingEnds. Allocates.
+  std::vector<double> memory_of(const FeatureState& state) const;
 
   // Advances `state` by a sample and its motion estimate; times increase. Contact is determined from the raw position.
   void update(FeatureState& state, const ToolSample& sample, const MotionEstimate& motion) const noexcept;
@@ -117,7 +142,11 @@ class FeaturePlan {
   void adopt(FeatureState& state, const FeaturePlan& plan, const FeatureState& before) const noexcept;
 
  private:
+  // Replaces each value of the memory of `state`, in the order of RecordingEnds, by the result of `use`.
+  void each_memory(FeatureState& state, const auto& use) const;
+
   std::vector<FeatureSpec> specs_;
+  std::vector<RecordingEnds> ends_;
   std::array<std::size_t, kMaxFeatures> first_lane_{};  // of each feature in PartMemory
   BranchLanes branches_;
   BristleLanes bristles_;
@@ -128,12 +157,16 @@ class FeaturePlan {
 class FeatureFilter {
  public:
   explicit FeatureFilter(const std::vector<FeatureSpec>& specs,
-                         double deepest_m = std::numeric_limits<double>::infinity())
-      : plan_(specs, deepest_m) {}
+                         double deepest_m = std::numeric_limits<double>::infinity(),
+                         const std::vector<RecordingEnds>& ends = {})
+      : plan_(specs, deepest_m, ends) {}
 
   const FeaturePlan& plan() const noexcept { return plan_; }
   const FeatureState& state() const noexcept { return state_; }
-  void reset() noexcept { state_.started = false; }
+  void reset() noexcept { state_ = {}; }
+  void begin(const ToolSample& sample) noexcept { plan_.begin(state_, sample); }
+  // Declares that the motion so far preceded the stream that begins now.
+  void begin_as_told() noexcept { state_.began = kBeganAsTold; }
   // The time of the last sample; minus infinity before the first.
   double time_s() const noexcept { return state_.started ? state_.time_s : -std::numeric_limits<double>::infinity(); }
   const FeatureVector& update(const ToolSample& sample, const MotionEstimate& motion) noexcept {

@@ -39,6 +39,11 @@ class ForceModel {
   virtual double deepest_m() const noexcept { return std::numeric_limits<double>::infinity(); }
   // At a smaller depth, and in air, the model is out of its domain, m: above 0 if the training never left the material.
   virtual double shallowest_m() const noexcept { return 0.0; }
+  // Of the training recordings: how a stream may begin.
+  virtual const std::vector<RecordingEnds>& ends() const noexcept {
+    static const std::vector<RecordingEnds> none;
+    return none;
+  }
   virtual const std::string& name() const noexcept = 0;    // e.g. "greedy-100"
   virtual const std::string& method() const noexcept = 0;  // e.g. "greedy"
   virtual int centre_count() const noexcept = 0;           // nodes for a grid

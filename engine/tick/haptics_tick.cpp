@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "engine/base/cycle_clock.h"
+#include "engine/tick/sensor_identification.h"
 
 namespace palpate {
 namespace {
@@ -56,8 +57,10 @@ HapticsTick::HapticsTick(const SensorSpec& sensor, ForceModels models) : motion_
   assert(models_.size() <= kMaxModels);
   for (const auto& model : models_) {
     std::size_t index = 0;
-    while (index < filters_.size() && !filters_[index].plan().is_of(model->features(), model->deepest_m())) ++index;
-    if (index == filters_.size()) filters_.emplace_back(model->features(), model->deepest_m());
+    const std::vector<FeatureSpec>& specs = model->features();
+    const std::vector<RecordingEnds>& ends = model->ends();
+    while (index < filters_.size() && !filters_[index].plan().is_of(specs, model->deepest_m(), ends)) ++index;
+    if (index == filters_.size()) filters_.emplace_back(specs, model->deepest_m(), ends);
     filter_of_.push_back(index);
   }
   extremes_.resize(filters_.size());
@@ -68,9 +71,25 @@ void HapticsTick::reset() noexcept {
   motion_.reset();
   for (FeatureFilter& filter : filters_) filter.reset();
   for (ExtremeStates& extremes : extremes_) extremes.unknown = false;
-  started_ = false;
+  started_ = told_ = false;
   // Forces of the previous stream are removed.
   snapshot_ = {.tick = snapshot_.tick, .model_count = snapshot_.model_count};
+}
+
+void HapticsTick::start_after(const Recording& recording) {
+  reset();
+  const std::vector<RecordingRow>& rows = recording.rows;
+  MotionEstimator motion(identify_sensor(rows.data(), rows.size(), recording.columns));
+  for (const RecordingRow& row : rows) {
+    const ToolSample sample = tool_sample(row);
+    const MotionEstimate estimate = motion.update(sample);
+    for (FeatureFilter& filter : filters_) {
+      if (&row == &rows.front()) filter.begin(sample);
+      filter.update(sample, estimate);
+    }
+  }
+  for (FeatureFilter& filter : filters_) filter.begin_as_told();
+  told_ = true;
 }
 
 void HapticsTick::rehearse() noexcept {
@@ -90,8 +109,12 @@ void HapticsTick::rehearse() noexcept {
 }
 
 void HapticsTick::recall(const MotionHistory& history) noexcept {
-  for (const ToolSample& past : history.past())
-    for (FeatureFilter& filter : filters_) filter.update(past, {past.position_m, past.velocity_m_per_s});
+  for (const ToolSample& past : history.past()) {
+    for (FeatureFilter& filter : filters_) {
+      if (!filter.state().started) filter.begin(past);
+      filter.update(past, {past.position_m, past.velocity_m_per_s});
+    }
+  }
 }
 
 void HapticsTick::continue_from(const HapticsTick& before) noexcept {
@@ -104,7 +127,8 @@ void HapticsTick::continue_from(const HapticsTick& before) noexcept {
   snapshot_.force_N.fill(0.0);
   snapshot_.predicted_error_N.fill(0.0);
   if (!started_) {
-    for (FeatureFilter& filter : filters_) filter.reset();
+    for (FeatureFilter& filter : filters_)
+      if (!told_) filter.reset();
     return;
   }
   for (std::size_t i = 0; i < filters_.size(); ++i) {
@@ -151,8 +175,10 @@ void HapticsTick::update_features(const MotionEstimate& motion) noexcept {
   for (std::size_t i = 0; i < filters_.size(); ++i) {
     const FeaturePlan& plan = filters_[i].plan();
     ExtremeStates& extremes = extremes_[i];
+    const bool first = !started_ && !told_;
+    if (first) filters_[i].begin(sample_);
     const bool in_contact = filters_[i].update(sample_, motion).in_contact;
-    if (!started_ && in_contact) extremes.begin(plan, sample_);
+    if (first && in_contact) extremes.begin(plan, sample_);
     if (!in_contact) extremes.unknown = false;
     if (!extremes.unknown) continue;
     for (FeatureState& state : extremes.states) plan.update(state, sample_, motion);

@@ -3,9 +3,10 @@
 // estimated once, features once per distinct list, forces for every model; out of contact every force is 0.
 //
 // A stream that begins in contact does not show what was pressed before. The force assumes that the material was at
-// rest at this depth. Two extreme histories are simulated beside it until the tool leaves the material: a sudden press
-// from air, and a sudden retreat from a rest at the greatest depth of the training. The larger difference of their
-// forces is added to the predicted error.
+// rest at this depth, or that the stream continues a training recording (features.h). Two extreme histories are
+// simulated beside it until the tool leaves the material: a sudden press from air, and a sudden retreat from a rest at
+// the greatest depth of the training. The larger difference of their forces is added to the predicted error. After
+// `start_after` the memory of the material is known, and nothing is added.
 // Thread guarantee: construction allocates (slow side); `step` is wait-free,
 // allocates nothing, locks nothing, does no I/O and never throws; one thread at a time.
 #pragma once
@@ -16,6 +17,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "engine/recording/recording.h"
 #include "engine/tick/features.h"
 #include "engine/tick/force_model.h"
 #include "engine/tick/motion_estimator.h"
@@ -79,6 +81,11 @@ class HapticsTick {
 
   // Resets the motion estimate and the filters; the next sample starts a new stream.
   void reset() noexcept;
+  // Slow side: the same, and the next stream continues this recording, after a pause if its time is later: it begins
+  // with the memory of the material at the end of these rows. `recording`: of the same rig, positions as recorded.
+  void start_after(const Recording& recording);
+  // How the stream of model `index` began: kBeganAtRest, kBeganAsTold, or an index of the ends of the model.
+  int began(std::size_t index) const noexcept { return filters_[filter_of_[index]].state().began; }
 
   const TickSnapshot& step(const ToolSample& sample) noexcept;
 
@@ -124,6 +131,7 @@ class HapticsTick {
   double rehearsed_N_ = 0.0;  // result of `rehearse`, so that the compiler keeps it
   TickSnapshot snapshot_;
   bool started_ = false, timed_ = false;
+  bool told_ = false;  // the filters have the memory of `start_after`
 };
 
 }  // namespace palpate

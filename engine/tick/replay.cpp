@@ -45,10 +45,11 @@ double least_contact_N(const RecordingRow* rows, std::size_t count, double surfa
 }
 
 ReplaySummary replay(const Recording& recording, const ForceModels& models, const ReplayVisitor& visitor,
-                     double surface_offset_m) {
+                     double surface_offset_m, const Recording* after) {
   const std::vector<RecordingRow>& rows = recording.rows;
   ReplaySummary summary{identify_sensor(rows.data(), rows.size(), recording.columns)};
   HapticsTick tick(summary.sensor, models);
+  if (after != nullptr) tick.start_after(*after);
   const double surface_m = common_surface_m(models);
   const double least_N = least_contact_N(rows.data(), rows.size(), surface_m + surface_offset_m);
   for (const RecordingRow& row : rows) {
@@ -60,6 +61,7 @@ ReplaySummary replay(const Recording& recording, const ForceModels& models, cons
     if (snapshot.in_contact) ++summary.contact_samples;
     if (visitor) visitor(row, snapshot, tick);
   }
+  for (std::size_t i = 0; i < models.size(); ++i) summary.began.push_back(tick.began(i));
   return summary;
 }
 

@@ -8,6 +8,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <vector>
 
 #include "engine/recording/recording.h"
 #include "engine/tick/haptics_tick.h"
@@ -22,6 +23,7 @@ using ReplayVisitor =
 struct ReplaySummary {
   SensorSpec sensor;
   std::uint64_t samples = 0, contact_samples = 0;
+  std::vector<int> began;  // of each model (HapticsTick::began)
 };
 
 // The measured force above which a sample is in contact, N (certain_force_N). The noise is that of the first rows of a
@@ -29,8 +31,8 @@ struct ReplaySummary {
 double least_contact_N(const RecordingRow* rows, std::size_t count, double surface_m);
 
 // `models`: up to kMaxModels. `surface_offset_m` is subtracted from every position before the tick; the visitor
-// receives the row as recorded.
+// receives the row as recorded. `after`: the recording that this one continues (HapticsTick::start_after); null: none.
 ReplaySummary replay(const Recording& recording, const ForceModels& models, const ReplayVisitor& visitor,
-                     double surface_offset_m = 0.0);
+                     double surface_offset_m = 0.0, const Recording* after = nullptr);
 
 }  // namespace palpate

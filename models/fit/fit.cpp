@@ -82,10 +82,10 @@ void finish_sites(PreparedTraining& prepared, const ModelPlan& plan) {
     // Where no force is measured and the trend is below 0, no correction is needed.
     const bool needless = std::abs(force_N) <= no_force_N && trend_N < 0.0;
     sites.target_N(k) = needless ? 0.0 : force_N - trend_N;
-    // With the force, eq. 8 of the paper. A dwell of many samples counts as at most 16.
+    // With the force, eq. 8 of the paper.
     const double unit_N =
         plan.base == Base::trend ? common.jnd.at(force_N) : std::max(std::abs(force_N), kReductionForce_N);
-    sites.row_scale(k) = 1.0 / unit_N * std::sqrt(std::min(sites.samples(k), 16.0));
+    sites.row_scale(k) = 1.0 / unit_N;
   }
   common.cover = make_cover(sites.points);
   common.correction_limit_N =
@@ -221,6 +221,7 @@ Result<PreparedTraining> prepare_training(SamplesPointer samples, const Training
     common.cover.inner_radius = choice.inner_radius;
     common.cover.outer_radius = outer_to_inner * choice.inner_radius;
   }
+  common.ends = recording_ends(table, common.features);
   // A model takes positions in the coordinate of its recordings.
   for (FeatureSpec& spec : common.features)
     if (spec.kind == FeatureKind::depth) spec.surface_position_m = table.surface_m;

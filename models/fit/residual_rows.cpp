@@ -283,8 +283,7 @@ CorrectionChoice choose_correction(const ResidualRows& rows, const ModelData& co
       const auto fold = static_cast<std::size_t>(rows.fold[i]);
       if (rows.depth_m(row) > deepest_m[fold]) continue;
       const double force_N = rows.predicted_N(common, i, candidate.inner_radius, h(row));
-      const double error = common.jnd.error_over_jnd(force_N, rows.force_N(row));
-      candidate.errors.add(fold, error * robust_scale(error));
+      candidate.errors.add(fold, common.jnd.error_over_jnd(force_N, rows.force_N(row)));
     }
   };
   std::vector<ScoredCorrection> candidates{{{false, fits.unit(), least_radius}, folds}};  // no correction

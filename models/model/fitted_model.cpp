@@ -53,6 +53,14 @@ SensorSpec sensor_with_step(const ModelData& data, double encoder_step_m) {
   return theirs ? *data.sensor : SensorSpec{encoder_step_m, 0.0};
 }
 
+std::string began_words(const ModelData& data, int began) {
+  if (began == kBeganAtRest) return "at rest";
+  if (began == kBeganAsTold) return "as the end of the recording before";
+  const auto index = static_cast<std::size_t>(began);
+  const std::vector<std::string>& names = data.provenance.recordings;
+  return "as the end of " + (index < names.size() ? names[index] : "training recording " + std::to_string(began + 1));
+}
+
 FittedModel::FittedModel(ModelData data)
     : data_(std::move(data)), trend_inputs_(data_.features), guard_(data_.cover), dimension_(data_.features.size()) {
   for (std::size_t i = 0; i < dimension_; ++i) {

@@ -88,6 +88,8 @@ struct ModelData : Normalisation {
   // The force at the outer end of recordings that never leave the material; else 0. In air the model's force is 0, so
   // that it steps there, and the model is out of its domain above the recorded depths.
   double surface_step_N = 0.0;
+  // Of each recording of the provenance, in its order; empty: not known, and every stream begins at rest.
+  std::vector<RecordingEnds> ends;
   DomainCover cover;
   std::optional<ErrorBound> error_bound;  // none of a fit to the measured force, or to a single press
   // The position sensor of the training recordings, the coarsest of them: the default sensor of streams and exported
@@ -112,6 +114,10 @@ Status check_forces(const ModelData& data);
 // known), else one with this step and no noise.
 SensorSpec sensor_with_step(const ModelData& data, double encoder_step_m);
 
+// How a stream of this model began (HapticsTick::began): "at rest", "as the end of NAME", or "as the end of the
+// recording before".
+std::string began_words(const ModelData& data, int began);
+
 class FittedModel final : public ForceModel {
  public:
   // `data`: from a fit or a file, with sizes that match.
@@ -123,6 +129,7 @@ class FittedModel final : public ForceModel {
   // depth feature.
   double deepest_m() const noexcept override { return deepest_m_; }
   double shallowest_m() const noexcept override { return shallowest_m_; }
+  const std::vector<RecordingEnds>& ends() const noexcept override { return data_.ends; }
   const std::string& name() const noexcept override { return data_.name; }
   const std::string& method() const noexcept override { return data_.method; }
   int centre_count() const noexcept override { return data_.centre_count(); }

@@ -53,6 +53,15 @@ Status add_rows(Samples& samples, const PreparedRecording& prepared, std::size_t
   return {};
 }
 
+// Moves the surface of the table, before `measure`.
+void move_surface(Samples& samples, double by_m) {
+  samples.surface_m += by_m;
+  for (Sample& row : samples.rows) {
+    row.tool.position_m -= by_m;
+    row.motion.position_m -= by_m;
+  }
+}
+
 // Strokes, rows in contact and their ranges.
 void measure(Samples& samples, const JndLine& jnd) {
   double squares = 0.0, lowest_N = 0.0, pulls = 0.0, start_s = 0.0, duration_s = 0.0, steps = 0.0;
@@ -86,6 +95,23 @@ void measure(Samples& samples, const JndLine& jnd) {
   samples.sample_s = duration_s / std::max(1.0, steps);
   // A tool that never moved still needs a scale: 1 um/s.
   samples.rms_velocity_m_per_s = std::max(1e-6, count > 0.0 ? std::sqrt(squares / count) : 0.0);
+}
+
+// The surface of recordings that press or pull at every position, m, < 0; 0 if there is none: outside of all positions
+// by a twentieth of their range, where at least ten of the rows at p <= 0, and a hundredth of them, have a force above
+// the JND, and the lowest position is a fiftieth of the range below 0. (2 % and 20 % give the same forces.)
+double outer_surface_m(const Samples& samples, const JndLine& jnd) {
+  const auto [lowest, highest] =
+      std::ranges::minmax(samples.rows, {}, [](const Sample& row) { return row.tool.position_m; });
+  const double lowest_m = lowest.tool.position_m, range_m = highest.tool.position_m - lowest_m;
+  if (!(lowest_m < -0.02 * range_m)) return 0.0;
+  double outside = 0.0, loaded = 0.0;
+  for (const Sample& row : samples.rows) {
+    if (in_contact(row.tool, 0.0)) continue;
+    ++outside;
+    if (std::abs(row.force_N) > jnd.at(row.force_N)) ++loaded;
+  }
+  return loaded >= std::max(10.0, 0.01 * outside) ? lowest_m - 0.05 * range_m : 0.0;
 }
 
 // The surface of recordings that begin under a preload at position 0, m, <= 0; 0 if there is none. A straight line is
@@ -198,19 +224,17 @@ Result<Samples> make_samples(std::vector<PreparedRecordingPointer> recordings, c
   samples.rows.reserve(samples.recorded_rows / stride + recordings.size());
   for (const PreparedRecordingPointer& one : recordings)
     if (Status status = add_rows(samples, *one, stride, control); !status) return status.error();
+  const bool clear = std::ranges::any_of(recordings, [](const auto& one) { return one->surface.identified(); });
+  const bool air = std::ranges::any_of(recordings, [](const auto& one) { return one->surface.air.found; });
+  if (!clear && !air) move_surface(samples, outer_surface_m(samples, jnd));
   measure(samples, jnd);
   if (samples.contact.empty()) {
     return Error{
         "no sample of the training recordings is in contact (position_m > 0): there is nothing to fit; record a press, "
         "check the sign of position_m, or set its origin (palpate import FILE --zero contact)"};
   }
-  const bool clear = std::ranges::any_of(recordings, [](const auto& one) { return one->surface.identified(); });
   if (const double out_m = clear ? 0.0 : preload_surface_m(samples, jnd); out_m != 0.0) {
-    samples.surface_m += out_m;
-    for (Sample& row : samples.rows) {
-      row.tool.position_m -= out_m;
-      row.motion.position_m -= out_m;
-    }
+    move_surface(samples, out_m);
     samples.stroke.clear();
     samples.contact.clear();
     measure(samples, jnd);
@@ -267,6 +291,26 @@ Result<Eigen::MatrixXd> features_at(const Samples& samples, const std::vector<Fe
   });
   if (stopped) return interrupted();
   return values;
+}
+
+std::vector<RecordingEnds> recording_ends(const Samples& samples, const std::vector<FeatureSpec>& features) {
+  std::vector<RecordingEnds> all;
+  FeatureFilter filter(features);
+  for (std::size_t i = 0; i < samples.rows.size(); ++i) {
+    const auto recording = static_cast<std::size_t>(samples.recording[i]);
+    const Sample& row = samples.rows[i];
+    const double recorded_m = row.tool.position_m + samples.surface_m + samples.offsets[recording].offset_m;
+    if (samples.begins_recording(i)) {
+      filter.reset();
+      all.push_back({recorded_m, recorded_m, {}});
+    }
+    filter.update(row.tool, row.motion);
+    const bool ends = i + 1 == samples.rows.size() || samples.begins_recording(i + 1);
+    if (!ends) continue;
+    all.back().last_position_m = recorded_m;
+    all.back().memory = filter.plan().memory_of(filter.state());
+  }
+  return all;
 }
 
 }  // namespace palpate

@@ -3,8 +3,8 @@
 //
 // Positions and forces are corrected by the offset of their recording, where that is clear (prepared_recording.h). The
 // surface of the table is the median of the clear surfaces, because the next recording is as likely on one side of it
-// as on the other. Without one, recordings that begin under a preload have theirs where the line through their first
-// forces is 0. Neighbouring samples of a stroke have correlated errors, so a fold never consists of single samples.
+// as on the other. Without one, recordings that press at every position have theirs outside of all positions, and
+// recordings that begin under a preload where the line through their first forces is 0. Neighbouring samples of a stroke have correlated errors, so a fold never consists of single samples.
 // Thread guarantee: an immutable value; slow side.
 #pragma once
 
@@ -74,5 +74,7 @@ Samples thinned(const Samples& samples, double least_step_s);
 // features at a time. Errors: interrupted.
 Result<Eigen::MatrixXd> features_at(const Samples& samples, const std::vector<FeatureSpec>& features,
                                     const std::vector<std::size_t>& rows, const FitControl& control = {});
+// Of each recording, in the order of `offsets`, for these features, at most kMaxFeatures.
+std::vector<RecordingEnds> recording_ends(const Samples& samples, const std::vector<FeatureSpec>& features);
 
 }  // namespace palpate

@@ -10,6 +10,7 @@
 #include "engine/base/atomic_file.h"
 #include "engine/base/text.h"
 #include "engine/tick/haptics_tick.h"
+#include "models/samples/recording_faults.h"
 #include "scenes/cli/verbs.h"
 #include "scenes/evaluation/evaluate.h"
 #include "scenes/plot/compared_forces.h"
@@ -24,7 +25,7 @@ using OrderedJson = nlohmann::ordered_json;
 
 struct Options {
   std::vector<std::string> recordings, models, names;
-  std::string out, plot;
+  std::string after, out, plot;
   bool all = false, json = false, force = false;
 };
 
@@ -38,6 +39,7 @@ struct ReplayedModel {
   BoundFigures bound, bound_moved;  // as recorded, with the surface moved
   OffsetEstimate surface;
   ModelTiming time;
+  std::string began;  // how the stream began (began_words)
 };
 
 struct ReplayedRecording {
@@ -98,6 +100,7 @@ void add_figures(OrderedJson& object, const ErrorSummary& errors) {
 OrderedJson model_json(const ReplayedModel& replayed) {
   const auto& [name, model] = replayed.loaded;
   OrderedJson object = {{"name", name}, {"method", model->method()}, {"centres", model->centre_count()}};
+  object["began"] = replayed.began;
   add_figures(object, replayed.as_recorded);
   object["out_of_domain_samples"] = replayed.as_recorded.out_of_domain_samples;
   for (const auto& [key, time] :
@@ -171,6 +174,15 @@ void print_surface_note(const std::vector<ReplayedModel>& models) {
       1e3 * most.as_recorded.rms_error_N, 1e2 * most.surface_moved.within_jnd, 1e3 * most.surface_moved.rms_error_N);
 }
 
+// Says, of the first such model, that the recording begins in contact with the memory of another one.
+void print_beginning_note(const std::vector<ReplayedModel>& models) {
+  const auto rested = [](const ReplayedModel& one) { return one.began == began_words({}, kBeganAtRest); };
+  const auto first = std::ranges::find_if_not(models, rested);
+  if (first == models.end()) return;
+  std::printf("note: for %.64s the material begins %.200s, not at rest\n", first->loaded.name.c_str(),
+              first->began.c_str());
+}
+
 // Says, for the first such model, that the recording does not distinguish an offset of the surface and of the force.
 void print_ambiguity_note(const std::vector<ReplayedModel>& models) {
   const auto ambiguous = [](const ReplayedModel& one) { return one.surface.force_offset_N != 0.0; };
@@ -196,6 +208,7 @@ void print_recording(const ReplayedRecording& replayed, bool all) {
     }
   }
   print_table(rows, true);
+  print_beginning_note(replayed.models);
   print_surface_note(replayed.models);
   print_ambiguity_note(replayed.models);
 }
@@ -276,9 +289,11 @@ Status draw_replay(const std::string& path, const std::string& recording, const 
   return draw_plot(plot, path, overwrite);
 }
 
-// `forces_path`: features and forces; `plot_path`: a figure. Empty: not requested.
-Result<ReplayedRecording> replay_one(const CheckedFile& checked, const std::vector<LoadedModel>& models,
-                                     const std::string& forces_path, const std::string& plot_path, bool overwrite) {
+// `after`: the recording that this one continues; null: none. `forces_path`: features and forces; `plot_path`: a figure.
+// Empty: not requested.
+Result<ReplayedRecording> replay_one(const CheckedFile& checked, const Recording* after,
+                                     const std::vector<LoadedModel>& models, const std::string& forces_path,
+                                     const std::string& plot_path, bool overwrite) {
   std::vector<EvaluatedModel> evaluated;
   std::vector<ModelPointer> pointers;
   for (const LoadedModel& one : models) {
@@ -293,6 +308,7 @@ Result<ReplayedRecording> replay_one(const CheckedFile& checked, const std::vect
     forces.emplace(std::move(*file));
   }
   EvaluationRequest request;
+  request.after = after;
   request.also = [&](const RecordingRow& row, const TickSnapshot& snapshot, const HapticsTick& tick) {
     if (forces) forces->add(row, snapshot, tick);
     const auto begin = snapshot.force_N.begin();
@@ -310,9 +326,9 @@ Result<ReplayedRecording> replay_one(const CheckedFile& checked, const std::vect
   ReplayedRecording replayed{checked.path, evaluation->samples, evaluation->no_force.summary().samples, {}};
   const std::vector<ModelTiming> times = time_models(pointers, evaluation->timing);
   for (std::size_t i = 0; i < models.size(); ++i) {
-    const auto& [recorded, moved, surfaces] = evaluation->models[i];
+    const auto& [recorded, moved, surfaces, began] = evaluation->models[i];
     replayed.models.push_back({models[i], recorded.summary(), moved.summary(), recorded.bounds(), moved.bounds(),
-                               surfaces.front(), times[i]});
+                               surfaces.front(), times[i], began_words(models[i].model->data(), began)});
   }
   if (plot_path.empty()) return replayed;
   const Status drawn =
@@ -348,9 +364,15 @@ Status run(const Options& options) {
   request.jnd = models->front().model->data().jnd;
   const auto checked = check_before_use(options.recordings, request);
   if (!checked) return checked.error();
+  std::optional<Recording> after;
+  if (!options.after.empty()) {
+    auto read = read_usable_recording(options.after);
+    if (!read) return read.error();
+    after = std::move(*read);
+  }
   std::vector<ReplayedRecording> all;
   for (std::size_t i = 0; i < checked->size(); ++i) {
-    auto replayed = replay_one((*checked)[i], *models, forces[i], plots[i], options.force);
+    auto replayed = replay_one((*checked)[i], after ? &*after : nullptr, *models, forces[i], plots[i], options.force);
     if (!replayed) return replayed.error();
     all.push_back(std::move(*replayed));
   }
@@ -374,6 +396,9 @@ void add_replay(CLI::App& app, Verbs& verbs) {
   const auto options = std::make_shared<Options>();
   command->add_option("--recording", options->recordings, "Recordings to replay (CSV), one or more")
       ->required()
+      ->type_name("CSV");
+  command->add_option("--after", options->after,
+                      "Recording that these continue: the models begin with the memory of its end (CSV)")
       ->type_name("CSV");
   command->add_option("--model", options->models, "Model files (JSON), 1 to 16")->required();
   command->add_option("--name", options->names,

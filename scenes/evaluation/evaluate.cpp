@@ -94,7 +94,9 @@ class Evaluator {
           }
         }
       };
-      const ReplaySummary summary = replay(recording_, group, visitor, offset_m);
+      const ReplaySummary summary = replay(recording_, group, visitor, offset_m, request_.after);
+      for (std::size_t k = 0; offset_m == 0.0 && k < count; ++k)
+        for (const std::size_t i : which[first + k]) pooled_.models[i].began = summary.began[k];
       if (is_first) {
         pooled_.samples += summary.samples;
         pooled_.timing.back().sensor = summary.sensor;

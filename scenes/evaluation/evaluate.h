@@ -33,6 +33,7 @@ struct EvaluationRequest {
   ReplayVisitor also;
   // Errors count from this time of the recording on. Earlier rows are replayed because the features have memory.
   double counted_from_s = -std::numeric_limits<double>::infinity();
+  const Recording* after = nullptr;  // the recording that this one continues (engine/tick/replay.h)
   bool move_surface = true;  // false: the figures with the surface moved equal those as recorded
   // The models from which one common surface offset is estimated. Empty: each model has its own estimate.
   std::vector<ModelPointer> surface_models;
@@ -43,6 +44,7 @@ struct EvaluationRequest {
 struct ModelEvaluation {
   ModelErrors as_recorded, surface_moved;
   std::vector<OffsetEstimate> surfaces;  // of each recording; its offset is 0 if not identified
+  int began = kBeganAtRest;              // the last recording (HapticsTick::began)
 };
 
 struct Evaluation {

@@ -123,6 +123,16 @@ void describe_model(auto& file, ModelData& data) {
     file.value("outer_radius", data.cover.outer_radius, {data.cover.inner_radius, kLargestNumber, true});
     file.points("points", data.cover.points, dimension);
   });
+  if (file.has("recording_ends", !data.ends.empty())) {
+    describe_each(file, "recording_ends", data.ends, 0, [&](RecordingEnds& one) {
+      file.value("first_position_m", one.first_position_m);
+      file.value("last_position_m", one.last_position_m);
+      const auto size = static_cast<Eigen::Index>(memory_size(data.features));
+      Eigen::VectorXd memory = Eigen::Map<const Eigen::VectorXd>(one.memory.data(), std::ssize(one.memory));
+      file.numbers("memory", memory, size, "numbers, one for each low-pass and each part of a feature");
+      one.memory.assign(memory.begin(), memory.end());
+    });
+  }
   describe_unless_0(file, "surface_step_N", data.surface_step_N, kNotNegative);
   describe_unless_0(file, "lowest_force_N", data.lowest_force_N, {-kMaximumForce_N, 0.0});
   if (file.has("sensor", data.sensor.has_value())) {

@@ -106,6 +106,28 @@ TEST(Samples, ARecordingWithoutFreeAirHasNoOffsetOfItsOwn) {
   EXPECT_EQ(alone.contact.size(), 6000u);
 }
 
+// A piston, whose zero is somewhere in its way: a force at every position.
+TEST(Samples, WhereEveryPositionHasAForceTheSurfaceIsOutsideOfAll) {
+  const auto surface_m = [](double lowest_m, int loaded, bool air) {
+    Recording recording;
+    recording.name = "piston";
+    int outside = 0;
+    for (int i = 0; i < 4000; ++i) {
+      const double out = 0.5 + 0.5 * std::cos(2e-3 * M_PI * i);
+      const double position_m = 5e-3 + (lowest_m - 5e-3) * out;
+      const bool within = position_m > 0.0 || outside++ < loaded;
+      const double force_N = 3.0 + std::sin(9.0 * out);
+      recording.rows.push_back({1e-3 * i, position_m, within && !(air && position_m < 1e-3) ? force_N : 0.0, 0.0, 0.0});
+    }
+    return samples_of({recording}).surface_m;
+  };
+  constexpr double kRange_m = 7e-3;
+  EXPECT_NEAR(surface_m(-2e-3, 4000, false), -2e-3 - 0.05 * kRange_m, 1e-12);
+  EXPECT_EQ(surface_m(-2e-3, 5, false), 0.0) << "fewer than ten rows and 1 %";
+  EXPECT_EQ(surface_m(-0.05e-3, 4000, false), 0.0) << "hardly outside of 0";
+  EXPECT_GT(surface_m(-2e-3, 0, true), -1e-3) << "free air";
+}
+
 TEST(Samples, TheForceZeroOfEachRecordingIsSubtracted) {
   const Samples samples = samples_of({presses(5), presses(4, 0.0, 0.3), presses(3, 0.0, -0.05)});
   const double zeros_N[] = {0.0, 0.3, -0.05};
@@ -347,6 +369,18 @@ TEST(FeaturesAt, AreThoseOfAFilterOneByOne) {
   }
   EXPECT_EQ(must(features_at(samples, features, {})).cols(), 0);
   EXPECT_EQ(must(features_at(samples, {}, {samples.contact[0]})).rows(), 0);
+}
+
+TEST(RecordingEnds, AreThoseAsRecordedWithTheMemoryOfAFilter) {
+  const std::vector<FeatureSpec> features = {FeatureSpec{}, test::spectrum({0.3}, test::stiffening())};
+  const Samples samples = samples_of({presses(3, 1e-3), strokes_in_contact(2)});
+  const std::vector<RecordingEnds> ends = recording_ends(samples, features);
+  ASSERT_EQ(ends.size(), 2u);
+  EXPECT_NEAR(ends[0].first_position_m, -2e-3, 1e-12);
+  EXPECT_NEAR(ends[1].first_position_m, 1e-3, 1e-12);
+  EXPECT_NEAR(ends[1].last_position_m, 1e-3, 1e-6);
+  const Eigen::MatrixXd values = must(features_at(samples, features, {samples.rows.size() - 1}));
+  EXPECT_EQ(ends[1].memory, std::vector{values(1, 0)});
 }
 
 TEST(FeaturesAt, CanBeInterrupted) {

@@ -35,6 +35,7 @@ MEANING = {
     "accelerometer": "whether accelerations were measured",
     "advice": "what to do; may be empty",
     "beyond_units": "strokes with an error above one JND",
+    "began": "the memory of the material at the first row: at rest, or as the end of another recording",
     "bound_95_held": "share of the errors below the 95 % bound, as recorded",
     "bound_95_held_moved": "the same, aligned",
     "centres": "number of centres or of nodes; 0: the trend alone",

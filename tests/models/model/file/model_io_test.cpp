@@ -53,8 +53,11 @@ TEST(ModelIo, FeaturesWithPartsSplinesSofteningAndTheErrorBoundAreKept) {
   data.trend.elastic = test::even_spline(0.1, 1.0 / 3.0);
   data.error_bound = ErrorBound{0.01, 0.02, 0.3};
   data.sensor = SensorSpec{30e-6, 1e-6};
+  const std::vector<double> memory(memory_size(data.features), 1.0 / 3.0);
+  data.ends = {{-1e-3, 4e-3, memory}, {0.0, 0.1, memory}};
   const ModelData back = read_back(data);
   EXPECT_EQ(back.features, data.features);
+  EXPECT_EQ(back.ends, data.ends);
   ASSERT_TRUE(back.error_bound.has_value() && back.sensor.has_value());
   EXPECT_EQ(back.sensor->encoder_step_m, 30e-6);
   EXPECT_EQ(back.sensor->position_noise_m, 1e-6);
