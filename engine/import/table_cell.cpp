@@ -9,6 +9,7 @@
 #include <string>
 #include <utility>
 
+#include "engine/base/statistics.h"
 #include "engine/base/text.h"
 #include "engine/import/units.h"
 

@@ -4,6 +4,7 @@
 #include <bit>
 #include <tuple>
 
+#include "engine/base/statistics.h"
 #include "engine/base/text.h"
 #include "engine/recording/recording_writer.h"
 
@@ -54,12 +55,6 @@ EndForce end_force(const std::array<Slice, kSlices>& slices, bool low) {
 }
 
 }  // namespace
-
-double nth_smallest(std::vector<double> values, std::size_t n) {
-  const auto at = values.begin() + static_cast<std::ptrdiff_t>(n);
-  std::nth_element(values.begin(), at, values.end());
-  return *at;
-}
 
 std::uint64_t content_hash(const Recording& recording) {
   std::uint64_t hash = 0xCBF29CE484222325ULL;

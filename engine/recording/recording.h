@@ -45,9 +45,6 @@ struct Recording {
 // A hash of the numbers of a recording, independent of its name: FNV-1a with an additional shift.
 std::uint64_t content_hash(const Recording& recording);
 
-// The value at index `n` in ascending order.
-double nth_smallest(std::vector<double> values, std::size_t n);
-
 inline constexpr std::size_t kRecordingMinimumRows = 10;
 inline constexpr std::size_t kAllRows = std::numeric_limits<std::size_t>::max();
 

@@ -23,7 +23,7 @@ using ReplayVisitor =
 struct ReplaySummary {
   SensorSpec sensor;
   std::uint64_t samples = 0, contact_samples = 0;
-  std::vector<int> began;  // of each model (HapticsTick::began)
+  std::vector<int> began{};  // of each model (HapticsTick::began)
 };
 
 // The measured force above which a sample is in contact, N (certain_force_N). The noise is that of the first rows of a

@@ -4,6 +4,8 @@
 #include <limits>
 #include <vector>
 
+#include "engine/base/statistics.h"
+
 namespace palpate {
 namespace {
 

@@ -11,7 +11,7 @@
 #include "engine/tick/features.h"
 #include "engine/tick/jnd.h"
 #include "models/check/recording_measures.h"
-#include "models/samples/prepared_recording.h"
+#include "models/samples/samples.h"
 #include "models/samples/recording_faults.h"
 
 namespace palpate {

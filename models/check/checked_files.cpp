@@ -5,9 +5,10 @@
 #include <optional>
 #include <utility>
 
+#include "engine/base/statistics.h"
 #include "engine/base/text.h"
 #include "models/check/check_recording.h"
-#include "models/samples/sample.h"
+#include "models/samples/samples.h"
 
 namespace palpate {
 namespace {

@@ -5,6 +5,8 @@
 #include <optional>
 #include <utility>
 
+#include "engine/base/statistics.h"
+
 namespace palpate {
 namespace {
 

@@ -7,9 +7,8 @@
 
 #include "engine/recording/recording.h"
 #include "engine/tick/jnd.h"
-#include "models/samples/prepared_recording.h"
-#include "models/samples/profile_search.h"
-#include "models/samples/sample.h"
+#include "models/samples/samples.h"
+#include "models/samples/selection.h"
 
 namespace palpate {
 

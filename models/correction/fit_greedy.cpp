@@ -1,13 +1,13 @@
 // The greedy method: orthogonal forward selection, starting from the polynomial tail. Each step adds the site whose
 // kernel column lowers the weighted squared error most, from a random subset of the sites or from all. A step costs
-// O(N candidates basis) with random subsets, and O(N^2) with all sites (orthogonal_basis.h).
+// O(N candidates basis) with random subsets, and O(N^2) with all sites (algebra.h).
 // Source: Hoever & Harders (2009), section 4.2.3; Chen, Cowan & Grant (1991) for the orthogonal form.
 #include <algorithm>
 #include <span>
 #include <vector>
 
+#include "models/correction/algebra.h"
 #include "models/correction/methods.h"
-#include "models/correction/orthogonal_basis.h"
 #include "models/linear/lapack.h"
 
 namespace palpate {

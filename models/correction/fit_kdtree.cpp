@@ -15,8 +15,8 @@
 #include <vector>
 
 #include "engine/base/parallel.h"
+#include "models/correction/algebra.h"
 #include "models/correction/methods.h"
-#include "models/correction/orthogonal_basis.h"
 #include "models/linear/lapack.h"
 #include "models/model/correction.h"
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "models/correction/solve_weights.h"
+#include "models/correction/algebra.h"
 
 namespace palpate {
 
@@ -39,12 +39,9 @@ Result<FittedCorrection> fit_correction(const Method& method, const MethodTask& 
 
 Result<FittedCorrection> fit_centres(const MethodTask& task, const Eigen::MatrixXd& centres,
                                      const std::string& shortage) {
-  SolvedWeights solved = solve_weights(task.sites, centres);
-  const RbfFunction& function = solved.function;
-  if (!function.weights.allFinite() || !function.tail.allFinite())
+  FittedCorrection fitted = solve_weights(task.sites, centres);
+  if (!fitted.function().weights.allFinite() || !fitted.function().tail.allFinite())
     return Error{"the weights of the centres could not be computed; check the recording for extreme values"};
-  FittedCorrection fitted{
-      std::make_shared<const RbfCorrection>(std::move(solved.function)), {}, solved.rank, solved.condition_number};
   if (centres.cols() < task.centres)
     fitted.notes.push_back("only " + std::to_string(centres.cols()) + " centres: " + shortage);
   return fitted;

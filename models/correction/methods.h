@@ -31,14 +31,6 @@ struct MethodTask {
   CorrectionPtr base{};  // fit of the row's base; null: none
 };
 
-// The result of a method.
-struct FittedCorrection {
-  CorrectionPtr correction;
-  std::vector<std::string> notes;  // sentences for the user
-  Eigen::Index rank = 0;           // of the weights' equations: singular values or rows that are used; 0: none
-  double condition_number = 0.0;   // of these equations; 0: none
-};
-
 enum MethodOption : unsigned {
   kTakesCentres = 1U << 0,
   kTakesCandidates = 1U << 1,
@@ -72,7 +64,7 @@ const std::vector<const Method*>& methods();
 double expected_seconds(const Method& method);
 // Fits the method, and before it its base if the task has none. Errors: those of validate_sites and of the method.
 Result<FittedCorrection> fit_correction(const Method& method, const MethodTask& task, const FitControl& control = {});
-// For methods that select centres (d x n): their weights (models/correction/solve_weights.h). `shortage`: why there are
+// For methods that select centres (d x n): their weights (models/correction/algebra.h). `shortage`: why there are
 // fewer than planned. Errors: the weights could not be computed.
 Result<FittedCorrection> fit_centres(const MethodTask& task, const Eigen::MatrixXd& centres,
                                      const std::string& shortage);

@@ -14,10 +14,12 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <string>
 #include <vector>
 
 #include "engine/base/random_stream.h"
 #include "engine/base/result.h"
+#include "models/model/correction.h"
 #include "models/model/kernels.h"
 #include "models/samples/samples.h"
 
@@ -43,6 +45,17 @@ struct Sites {
 
   Eigen::Index count() const { return points.cols(); }
   int dimension() const { return static_cast<int>(points.rows()); }
+};
+
+// What is fitted to sites: the correction, and how well its weights are determined.
+struct FittedCorrection {
+  CorrectionPtr correction;
+  std::vector<std::string> notes{};  // sentences for the user
+  Eigen::Index rank = 0;             // of the weights' equations: singular values or rows that are used; 0: none
+  double condition_number = 0.0;     // the largest singular value of these equations over the smallest; 0: none
+
+  // Of a correction with centres.
+  const RbfFunction& function() const { return *rbf_of(correction); }
 };
 
 // Errors: a number is not finite.

@@ -82,10 +82,10 @@ void finish_sites(PreparedTraining& prepared, const ModelPlan& plan) {
     // Where no force is measured and the trend is below 0, no correction is needed.
     const bool needless = std::abs(force_N) <= no_force_N && trend_N < 0.0;
     sites.target_N(k) = needless ? 0.0 : force_N - trend_N;
-    // With the force, eq. 8 of the paper.
+    // With the force, eq. 8 of the paper. A dwell of many samples counts as at most 16.
     const double unit_N =
         plan.base == Base::trend ? common.jnd.at(force_N) : std::max(std::abs(force_N), kReductionForce_N);
-    sites.row_scale(k) = 1.0 / unit_N;
+    sites.row_scale(k) = 1.0 / unit_N * std::sqrt(std::min(sites.samples(k), 16.0));
   }
   common.cover = make_cover(sites.points);
   common.correction_limit_N =
@@ -354,7 +354,7 @@ Result<const PreparedTraining*> ModelFits::prepare(const ModelPlan& plan, const 
   return prepared_.back().second.get();
 }
 
-Result<ModelFits::Fit> ModelFits::fit(const ModelPlan& plan, const FitControl& control) {
+Result<MethodFit> ModelFits::fit(const ModelPlan& plan, const FitControl& control) {
   const double all_s = kPreparation_s + expected_seconds(*plan.method);
   const double prepared_at = prepared_for(plan) == nullptr ? kPreparation_s / all_s : 0.0;
   const auto prepared = prepare(plan, control.part(0.0, prepared_at));
@@ -375,7 +375,8 @@ Result<ModelFits::Fit> ModelFits::fit(const ModelPlan& plan, const FitControl& c
   auto made = fit_method(**prepared, plan, control.part(prepared_at, 1.0), base, choices);
   if (!made) return made.error();
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
-  Fit fit{std::move(*made), elapsed.count() + seconds};
+  MethodFit& fit = *made;
+  fit.seconds = elapsed.count() + seconds;
   const bool starts_others =
       std::ranges::any_of(methods(), [&](const Method* one) { return one->base == plan.method; });
   const bool has_choices = fit.choices && choices == nullptr;

@@ -3,12 +3,13 @@
 //   prepare_training   features, trend, normalisation, thinned sites, domain, whether the correction is used
 //   fit_method         one of the methods of models/correction/methods.h on the prepared sites
 // With Base::trend the methods fit the residual of the trend. With Base::force they fit the measured force, as Hoever &
-// Harders (2009), and what the paper leaves open is selected by cross-validation (open_choices.h).
+// Harders (2009), and what the paper leaves open is selected by cross-validation (OpenChoices).
 // Thread guarantee: slow side.
 #pragma once
 
 #include <memory>
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -16,7 +17,6 @@
 #include "engine/base/parallel.h"
 #include "engine/base/result.h"
 #include "models/fit/model_plan.h"
-#include "models/fit/open_choices.h"
 #include "models/fit/residual_rows.h"
 #include "models/model/fitted_model.h"
 #include "models/trend/trend_estimator.h"
@@ -31,6 +31,33 @@ struct TrainingScene {
   std::vector<FeatureSpec> features;  // depth, velocity, lowpass_velocity
   JndLine jnd;
 };
+
+// Selects what Hoever & Harders (2009) leave open for a fit to the measured force, by cross-validation: the order of
+// the polyharmonic kernel, the normalisation of the features, and the regularisation.
+//
+// Normalisation divides feature k by range_k^a (4 sigma_k)^(1 - a), with a = 1/2 or 1. Methods that select centres are
+// regularised by the truncation of their pseudo-inverse (eq. 8), and the direct interpolation by the smoothing of its
+// Cholesky factor, which takes the place of the truncated pseudo-inverse of eq. 4: the first is a step and the second
+// lambda / (lambda + smoothing) over the eigenvalues lambda (Hansen 1998, section 4.2).
+//
+// Each candidate is fitted on random centres to the sites outside of a fold and predicts the samples in contact of that
+// fold (models/samples/selection.h). The lowest score wins.
+struct OpenChoices {
+  KernelKind kernel = KernelKind::cubic;
+  double range_exponent = 0.5;  // a
+  double truncation = 0.0;      // of methods that select centres
+  double smoothing = 0.0;       // of the direct interpolation
+  double error_over_jnd = 0.0;  // cross-validated (FoldErrors::rms_at_mean_score)
+};
+
+// "cubic kernel, normalised by ...": what was selected, for the user.
+std::string choices_text(const OpenChoices& choices, bool has_kernel = true);
+// `features`: at the samples in contact, SI. `sites`: of the same samples, with targets. `common`: with the limits of
+// the force. `centres`: of the method, 0: the direct interpolation. `kernel`: that of the plan, none: selected. Errors:
+// interrupted.
+Result<OpenChoices> select_open_choices(const Samples& samples, const Eigen::MatrixXd& features,
+                                        const Normalisation& normalisation, const Sites& sites, const ModelData& common,
+                                        int centres, std::optional<KernelKind> kernel, const FitControl& control);
 
 struct PreparedTraining {
   SamplesPointer samples;
@@ -53,6 +80,7 @@ struct MethodFit {
   std::optional<OpenChoices> choices{};  // with Base::force
   Eigen::Index rank = 0;                 // as in FittedCorrection
   double condition_number = 0.0;
+  double seconds = 0.0;  // of ModelFits::fit: with its base, without the preparation
 };
 
 // Errors: the plan does not suit the scene; interrupted.
@@ -82,11 +110,8 @@ class ModelFits {
   // The preparation of a plan. Valid while this lives. Errors: those of make_samples and prepare_training.
   Result<const PreparedTraining*> prepare(const ModelPlan& plan, const FitControl& control);
 
-  struct Fit : MethodFit {
-    double seconds = 0.0;  // with its base, without the preparation
-  };
   // Prepares the plan, if that has not been done, and fits its method. Errors: those of prepare and fit_method.
-  Result<Fit> fit(const ModelPlan& plan, const FitControl& control);
+  Result<MethodFit> fit(const ModelPlan& plan, const FitControl& control);
 
  private:
   const PreparedTraining* prepared_for(const ModelPlan& plan) const;  // null: not prepared
@@ -95,7 +120,7 @@ class ModelFits {
   TrainingScene scene_;
   SamplesPointer samples_;
   std::vector<std::pair<ModelPlan, std::unique_ptr<PreparedTraining>>> prepared_;
-  std::vector<std::pair<ModelPlan, Fit>> fits_;  // to start others from
+  std::vector<std::pair<ModelPlan, MethodFit>> fits_;  // to start others from
 };
 
 }  // namespace palpate

@@ -1,4 +1,4 @@
-#include "models/fit/open_choices.h"
+#include "models/fit/fit.h"
 
 #include <algorithm>
 #include <array>
@@ -10,12 +10,11 @@
 #include "engine/base/parallel.h"
 #include "engine/base/random_stream.h"
 #include "engine/base/text.h"
-#include "models/correction/projected_kernel.h"
-#include "models/correction/solve_weights.h"
+#include "models/correction/algebra.h"
 #include "models/linear/lapack.h"
 #include "models/model/correction.h"
 #include "models/model/kernels.h"
-#include "models/samples/cross_validation.h"
+#include "models/samples/selection.h"
 
 namespace palpate {
 namespace {

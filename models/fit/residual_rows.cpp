@@ -10,8 +10,9 @@
 
 #include "engine/base/parallel.h"
 #include "engine/base/random_stream.h"
+#include "engine/base/statistics.h"
 #include "engine/tick/sensor_identification.h"
-#include "models/correction/projected_kernel.h"
+#include "models/correction/algebra.h"
 #include "models/linear/lapack.h"
 #include "models/model/correction.h"
 #include "models/model/domain_guard.h"

@@ -1,4 +1,4 @@
-// Rows of samples in contact, each with the trend that was fitted without its fold (models/samples/cross_validation.h),
+// Rows of samples in contact, each with the trend that was fitted without its fold (models/samples/selection.h),
 // and what is fitted to them: the choice of the correction and, to folds of whole units, the error bound. Thread
 // guarantee: slow side, value types and pure functions.
 #pragma once
@@ -9,7 +9,7 @@
 
 #include "models/correction/sites.h"
 #include "models/model/fitted_model.h"
-#include "models/samples/cross_validation.h"
+#include "models/samples/selection.h"
 #include "models/trend/trend_estimator.h"
 
 namespace palpate {

@@ -1,9 +1,10 @@
-#include "models/samples/prepared_recording.h"
+#include "models/samples/samples.h"
 
 #include <Eigen/Core>
 #include <algorithm>
 #include <utility>
 
+#include "engine/base/statistics.h"
 #include "engine/tick/sensor_identification.h"
 #include "models/linear/lapack.h"
 
@@ -33,7 +34,7 @@ void set_zero(FreeAir& air, std::vector<double> forces_N, double flat_N) {
   air.zero_error_N = std::sqrt(squares) / count;
 }
 
-// Differences of velocities over 10 ms where no acceleration is measured.
+// Differences of velocities over 20 ms where no acceleration is measured.
 std::vector<double> accelerations_m_per_s2(const std::vector<Sample>& rows) {
   const bool measured =
       std::ranges::any_of(rows, [](const Sample& row) { return row.tool.acceleration_m_per_s2 != 0.0; });
@@ -330,6 +331,14 @@ PreparedRecordingPointer prepare_recording(Recording recording) {
   }
   prepared->surface = estimate_surface(prepared->rows, prepared->force_noise_N);
   return prepared;
+}
+
+std::size_t first_test_row(const Recording& recording) {
+  const auto begin = recording.rows.begin();
+  const auto count = static_cast<std::ptrdiff_t>(recording.rows.size());
+  const auto cut = std::ranges::min_element(begin + count * 6 / 10, begin + count * 8 / 10, {},
+                                            [](const RecordingRow& row) { return std::abs(row.force_N); });
+  return static_cast<std::size_t>(cut - begin);
 }
 
 }  // namespace palpate

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "engine/base/statistics.h"
 #include "engine/tick/sensor_identification.h"
 
 namespace palpate {

@@ -1,24 +1,109 @@
-// The table of samples of a training: every row of all recordings, made once. Each estimate of a fit reads its columns;
+// Recordings with the estimates from each alone, and the table of samples of a training.
+//
+// Surface and force zero of a recording come from it alone; palpate check reports them, and a fit uses them. Free air is
+// a range at the outer end of the positions where the force during loading does not depend on the position; without it,
+// neither is identified. Force zero: the mean force there, without outliers. Surface: the onset of force in touches of a
+// surface at rest that begin in free air: the first, and those after 5 s of air, because a surface that still recovers
+// meets the tool late, by up to a millimetre. During loading,
+//   J(d0) = sum_i (f_i - zero - x_i^n (a (1 - k x_i) + b k x_i))^2,
+//           x_i = max(0, p_i - d0),  a, b >= 0,  n = 1 or 1.5,  k = n / ((n + 1) 3 mm)
+// is minimised over d0: a force law that is convex or concave and rises up to 3 mm.
+//
+// The table has every row of all recordings and is made once. Each estimate of a fit reads its columns;
 // nothing reads the recordings again. models/METHOD.md, Samples, defines contact, offsets and folds.
 //
-// Positions and forces are corrected by the offset of their recording, where that is clear (prepared_recording.h). The
+// Positions and forces are corrected by the offset of their recording, where that is clear. The
 // surface of the table is the median of the clear surfaces, because the next recording is as likely on one side of it
 // as on the other. Without one, recordings that press at every position have theirs outside of all positions, and
 // recordings that begin under a preload where the line through their first forces is 0. Neighbouring samples of a stroke have correlated errors, so a fold never consists of single samples.
-// Thread guarantee: an immutable value; slow side.
+// Thread guarantee: immutable values and pure functions, slow side.
 #pragma once
 
 #include <Eigen/Core>
+#include <cmath>
+#include <cstdint>
+#include <memory>
+#include <utility>
 #include <vector>
 
 #include "engine/base/parallel.h"
 #include "engine/base/result.h"
+#include "engine/recording/recording.h"
 #include "engine/tick/features.h"
 #include "engine/tick/jnd.h"
+#include "engine/tick/motion_estimator.h"
+#include "engine/tick/tool_sample.h"
 #include "models/model/fitted_model.h"
-#include "models/samples/prepared_recording.h"
+#include "models/samples/selection.h"
 
 namespace palpate {
+
+// The maximum number of rows of a search.
+inline constexpr std::size_t kSearchRows = 4000;
+
+// A row of a recording with the estimated motion of the tool.
+struct Sample {
+  ToolSample tool;
+  MotionEstimate motion;  // estimated from every row, before thinning
+  double force_N = 0.0;
+};
+
+// Every n-th row, n = rows / most + 1 (integer division), so that at most `most` are left, with the motion estimated
+// from all.
+std::vector<Sample> thinned_rows(const Recording& recording, std::size_t most);
+// The smallest and the largest position of at least one row.
+std::pair<double, double> position_range_m(const std::vector<Sample>& rows);
+// The index of the block of each row: kBlocks blocks of equal path length of the tool.
+inline constexpr std::size_t kBlocks = 10;
+std::vector<std::size_t> blocks_by_path(const std::vector<Sample>& rows);
+
+inline constexpr double kRestBeforeTouch_s = 5.0;
+
+struct FreeAir {
+  bool found = false;
+  double inner_end_m = 0.0;  // free air is certain for positions below
+  double zero_N = 0.0;
+  double zero_error_N = kUnknownError;  // standard error
+  double drift_N = 0.0;       // of the zero: median of the last third of the rows in air minus that of the first
+  double tool_mass_kg = 0.0;  // mass carried by the force sensor; 0 if not identified
+};
+
+struct SurfaceEstimate {
+  FreeAir air;  // if not found, all below is unknown
+  // To be subtracted from position_m so that 0 is the surface. `raw_offset_m`: the onset, before the test against 0.
+  double offset_m = 0.0;
+  double raw_offset_m = 0.0;
+  double standard_error_m = kUnknownError;  // infinite if the surface is not identified
+  double force_zero_N = 0.0;                // to be subtracted from force_N; 0 if not significant
+  // The surface at the last touch at rest minus that at the first; the error is infinite with fewer than two.
+  double offset_drift_m = 0.0;
+  double offset_drift_error_m = kUnknownError;
+
+  bool identified() const { return std::isfinite(standard_error_m); }
+};
+
+// The maximum number of rows from which a surface is estimated, and their largest interval: an approach with fewer rows
+// does not identify the onset. A longer recording at 1 kHz contributes its first seven minutes.
+inline constexpr std::size_t kOnsetRows = 400000;
+inline constexpr double kCoarsestOnset_s = 1.5e-3;
+
+// A recording with the estimates from it alone.
+struct PreparedRecording {
+  Recording recording;
+  std::uint64_t content_hash = 0;  // engine/recording/recording.h
+  SensorSpec sensor;
+  double force_noise_N = 0.0;  // standard deviation
+  std::vector<Sample> rows;    // with their motion; at most kOnsetRows
+  SurfaceEstimate surface;
+};
+
+using PreparedRecordingPointer = std::shared_ptr<const PreparedRecording>;
+
+// `recording`: at least one row.
+PreparedRecordingPointer prepare_recording(Recording recording);
+// The row at which the test part of a single recording begins, which continues the training part: that with the
+// smallest force of the rows from 60 to 80 %, in the air if it is among them, where the material remembers least.
+std::size_t first_test_row(const Recording& recording);
 
 // Half an hour at 1 kHz, some 200 MB. A fit of some thousand sites gains nothing from more rows.
 inline constexpr std::size_t kMaximumRows = 2000000;

@@ -17,7 +17,7 @@
 #include <vector>
 
 #include "engine/tick/jnd.h"
-#include "models/samples/cross_validation.h"
+#include "models/samples/selection.h"
 #include "models/trend/trend_columns.h"
 
 namespace palpate {

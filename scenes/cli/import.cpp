@@ -8,7 +8,7 @@
 #include "engine/base/atomic_file.h"
 #include "engine/base/text.h"
 #include "engine/import/import_table.h"
-#include "models/samples/prepared_recording.h"
+#include "models/samples/samples.h"
 #include "scenes/cli/verbs.h"
 
 namespace palpate::cli {

@@ -10,8 +10,8 @@
 
 #include "engine/tick/force_model.h"
 #include "engine/tick/jnd.h"
-#include "models/samples/profile_search.h"
-#include "models/samples/sample.h"
+#include "models/samples/selection.h"
+#include "models/samples/samples.h"
 
 namespace palpate {
 

@@ -6,6 +6,7 @@
 
 #include "engine/base/text.h"
 #include "engine/import/import_table.h"
+#include "models/samples/samples.h"
 #include "scenes/scene/folders.h"
 
 namespace palpate {
@@ -37,13 +38,10 @@ Result<ConvertedRecording> convert_recording(const std::string& path, const std:
 }
 
 std::optional<Recording> take_test_part(Recording& recording) {
-  constexpr std::ptrdiff_t kLeastRows = 100;
+  constexpr std::size_t kLeastRows = 100;
   std::vector<RecordingRow>& rows = recording.rows;
-  const auto count = static_cast<std::ptrdiff_t>(rows.size());
-  if (count < kLeastRows) return std::nullopt;
-  const auto first =
-      std::min_element(rows.begin() + count * 6 / 10, rows.begin() + count * 8 / 10,
-                       [](const RecordingRow& a, const RecordingRow& b) { return a.force_N < b.force_N; });
+  if (rows.size() < kLeastRows) return std::nullopt;
+  const auto first = rows.begin() + static_cast<std::ptrdiff_t>(first_test_row(recording));
   Recording part{recording.name + ", last " + fixed(rows.back().time_s - first->time_s, 1) + " s",
                  recording.columns,
                  {first, rows.end()}};

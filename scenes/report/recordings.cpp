@@ -17,7 +17,6 @@ namespace {
 
 constexpr std::size_t kLeakValues = 12;
 constexpr std::size_t kSmallestRecording = 1000;  // rows; a shorter recording is not divided
-constexpr double kKeptShare = 0.6;                // of a single recording
 
 // Each recording is tested once, with models that are fitted to the other folds.
 std::vector<Split> folds_of(const std::vector<PreparedRecordingPointer>& all) {
@@ -66,17 +65,13 @@ std::string seconds(const Recording& recording, std::size_t row) {
   return three_digits(recording.rows[row].time_s - recording.rows.front().time_s);
 }
 
-// Splits off a block of up to 40 % at the end of a recording as test data. The block begins at the first sample in the
-// air, if one is within 10 % of the rows. A recording of fewer than 1000 rows gives an empty split.
+// Splits off a block of up to 40 % at the end of a recording as test data (first_test_row). A recording of fewer than
+// 1000 rows gives an empty split.
 Split leave_out(const PreparedRecordingPointer& training) {
   Split split;
   const Recording& whole = training->recording;
   if (whole.rows.size() < kSmallestRecording) return split;
-  const auto kept =
-      whole.rows.begin() + static_cast<std::ptrdiff_t>(kKeptShare * static_cast<double>(whole.rows.size()));
-  const auto near = kept + static_cast<std::ptrdiff_t>(whole.rows.size() / 10);
-  const auto in_air = std::find_if(kept, near, [](const RecordingRow& row) { return row.position_m <= 0.0; });
-  const auto cut = in_air == near ? kept : in_air;
+  const auto cut = whole.rows.begin() + static_cast<std::ptrdiff_t>(first_test_row(whole));
   split.train.push_back(prepare_recording({whole.name, whole.columns, {whole.rows.begin(), cut}}));
   split.tested.push_back(training);
   split.counted_from_s = cut->time_s;

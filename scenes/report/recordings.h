@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "engine/base/result.h"
-#include "models/samples/prepared_recording.h"
+#include "models/samples/samples.h"
 
 namespace palpate {
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <utility>
 
-#include "models/correction/solve_weights.h"
+#include "models/correction/algebra.h"
 #include "models/model/correction.h"
 #include "tests/bench/bench_data.h"
 #include "tests/bench/bench_queries.h"
@@ -40,12 +40,12 @@ Status fill(VoxelGrid& grid, const RbfFunction& function) {
 }
 
 Result<RbfFunction> direct_and_grid(const Sites& sites, const Eigen::VectorXd&) {
-  Result<SolvedWeights> fitted = solve_direct(sites);
+  Result<FittedCorrection> fitted = solve_direct(sites);
   if (!fitted) return fitted.error();
   VoxelGrid grid = even_grid(sites, {25, 11, 11, 11});
-  if (const Status filled = fill(grid, fitted->function); !filled) return filled.error();
+  if (const Status filled = fill(grid, fitted->function()); !filled) return filled.error();
   benchmark::DoNotOptimize(grid.values_N.data());
-  return std::move(fitted->function);
+  return fitted->function();
 }
 
 // Times the fit alone. Memory is measured in a separate fit before: that returns all free memory

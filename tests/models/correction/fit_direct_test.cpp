@@ -1,4 +1,4 @@
-#include "models/correction/solve_weights.h"
+#include "models/correction/algebra.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,6 @@
 #include <cmath>
 
 #include "models/correction/methods.h"
-#include "models/correction/projected_kernel.h"
 #include "models/model/correction.h"
 #include "tests/support/message_parts.h"
 #include "tests/support/plain_rbf.h"
@@ -28,7 +27,7 @@ double rms_error(const RbfFunction& function, const Sites& truth) {
 Result<RbfFunction> function_of(const Sites& sites) {
   auto solved = solve_direct(sites);
   if (!solved) return solved.error();
-  return std::move(solved->function);
+  return solved->function();
 }
 
 Result<RbfFunction> smoothed_fit(Sites sites, KernelKind kernel, double smoothing) {

@@ -4,11 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 
 #include "models/model/correction.h"
 #include "tests/support/fit_centres.h"
 #include "tests/support/message_parts.h"
+#include "tests/support/plain_rbf.h"
 #include "tests/support/random_points.h"
 
 namespace palpate {
@@ -16,35 +16,8 @@ namespace {
 
 using test::smooth_sites;
 
-TEST(Methods, EveryRowIsWhole) {
-  std::set<std::string> names;
-  std::set<std::uint32_t> colours;
-  for (const Method* method : methods()) {
-    EXPECT_TRUE(names.insert(method->name).second) << method->name;
-    EXPECT_TRUE(colours.insert(method->colour).second) << method->name;
-    EXPECT_NE(std::string(method->label), "");
-    EXPECT_GT(method->expected_seconds, 0.0);
-    EXPECT_NE(method->fit, nullptr);
-    if (method->base == nullptr) continue;
-    EXPECT_NE(std::ranges::find(methods(), method->base), methods().end());
-  }
-}
-
 TEST(Methods, ABaseTakesItsTimeToo) {
   EXPECT_EQ(expected_seconds(kVoxelMethod), kVoxelMethod.expected_seconds + kDirectMethod.expected_seconds);
-}
-
-TEST(Methods, TakeTheirOptions) {
-  const auto that_take = [](MethodOption option) {
-    std::vector<std::string> names;
-    for (const Method* method : methods())
-      if (method->can_take(option)) names.emplace_back(method->name);
-    return names;
-  };
-  EXPECT_EQ(that_take(kTakesGrid), (std::vector<std::string>{"voxel"}));
-  EXPECT_EQ(that_take(kTakesCandidates), (std::vector<std::string>{"greedy"}));
-  EXPECT_EQ(that_take(kTakesCentres), (std::vector<std::string>{"random", "kdtree", "greedy"}));
-  EXPECT_EQ(that_take(kTakesKernel), (std::vector<std::string>{"direct", "voxel", "random", "kdtree", "greedy"}));
 }
 
 // A base that is given is not fitted again: of another one the result differs.
@@ -143,6 +116,30 @@ TEST(Methods, RefuseWrongSitesAndCanBeInterrupted) {
     EXPECT_TRUE(test::has_parts(test::fit_centres(method, sites, jnd_N, options).error().message,
                                 {"not finite", "; check the recording"}));
   });
+}
+
+TEST(FitRandom, CentresAreDistinctSitesThatDependOnTheSeed) {
+  Sites sites = smooth_sites(3, 60, 0.0, 1);
+  sites.points.rightCols(30) = sites.points.leftCols(30);
+  const auto fitted = test::fit_random(sites, {.centres = 30});
+  ASSERT_TRUE(fitted.ok());
+  const Eigen::MatrixXd& centres = fitted->centres;
+  for (int j = 0; j < 30; ++j) {
+    EXPECT_EQ((sites.points.colwise() - centres.col(j)).colwise().norm().minCoeff(), 0.0);
+    for (int k = 0; k < j; ++k) EXPECT_GT((centres.col(j) - centres.col(k)).norm(), 0.0);
+  }
+  EXPECT_NE(centres, test::fit_random(sites, {.centres = 30, .seed = 6})->centres);
+}
+
+TEST(FitRandom, IdenticalSitesGiveTheirWeightedMean) {
+  Sites sites = smooth_sites(2, 4, 0.0, 1);
+  sites.points.colwise() = sites.points.col(0).eval();
+  sites.target_N << 1, 2, 3, 6;
+  sites.row_scale.setOnes();
+  const auto fitted = test::fit_random(sites, {});
+  ASSERT_TRUE(fitted.ok());
+  // The ridge may reduce the force by a relative 1e-5 with four sites.
+  EXPECT_NEAR(rbf_value(*fitted, sites.points.data()), 3.0, 1e-4);
 }
 
 }  // namespace

@@ -8,8 +8,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "models/correction/projected_kernel.h"
-#include "models/correction/solve_weights.h"
+#include "models/correction/algebra.h"
 #include "models/model/correction.h"
 
 namespace palpate {
@@ -77,7 +76,7 @@ TEST_F(AgainstScipy, FitsTheSameWeightsTailAndValues) {
     sites.kernel = *kernel_from_name(name);
     const auto solved = solve_direct(sites);
     ASSERT_TRUE(solved.ok());
-    const RbfFunction& fitted = solved->function;
+    const RbfFunction& fitted = solved->function();
     SCOPED_TRACE(name + ", " + std::to_string(sites.dimension()) + "-D, smoothing " + std::to_string(smoothing));
     const double tolerance = 1e-13 * condition_of(sites);
     const Eigen::VectorXd weights = vector_of(item.at("weights"));

@@ -1,11 +1,11 @@
-#include "models/fit/open_choices.h"
+#include "models/fit/fit.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "models/correction/solve_weights.h"
+#include "models/correction/algebra.h"
 #include "tests/support/exact_samples.h"
 #include "tests/support/message_parts.h"
 #include "tests/support/random_points.h"
@@ -75,7 +75,7 @@ double error_N(const Repeated& from, const OpenChoices& choices, double truncati
   // Evenly over the repeats, so that some centres almost coincide.
   std::vector<Eigen::Index> centres;
   for (Eigen::Index i = 0; i < kRows; i += kRepeats) centres.push_back(i);
-  const RbfCorrection fitted(solve_weights(sites, sites.points(Eigen::all, centres)).function);
+  const RbfCorrection fitted(solve_weights(sites, sites.points(Eigen::all, centres)).function());
   const Eigen::MatrixXd u = 0.9 * test::random_points(2, 500, 99);
   const Eigen::Vector2d middle(3e-3, 0.0), size(2e-3, 0.05);
   double squares = 0.0;

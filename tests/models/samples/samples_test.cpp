@@ -315,6 +315,19 @@ TEST(Samples, WithoutContactThereAreNone) {
       "check the sign of position_m, or set its origin (palpate import FILE --zero contact)");
 }
 
+TEST(ThinnedRows, AreEvenlySpacedOverTheWholeWithTheMotionOfAllRows) {
+  const Recording recording = test::example_recording(1000, 1000.0);
+  const std::vector<Sample> all = thinned_rows(recording, kAllRows), few = thinned_rows(recording, 99);
+  ASSERT_EQ(all.size(), 1000u);
+  EXPECT_LE(few.size(), 99u);
+  EXPECT_GT(few.back().tool.time_s, 0.98 * all.back().tool.time_s);
+  for (const Sample& row : few) {
+    const auto same = std::ranges::find(all, row.tool.time_s, [](const Sample& one) { return one.tool.time_s; });
+    ASSERT_NE(same, all.end());
+    EXPECT_EQ(row.motion.velocity_m_per_s, same->motion.velocity_m_per_s);
+  }
+}
+
 TEST(Thinned, KeepsRowsThatAreFarEnoughApart) {
   const Samples samples = samples_of({presses(4), presses(3)});
   const Samples few = thinned(samples, 3.9e-3);

@@ -1,4 +1,4 @@
-#include "models/samples/prepared_recording.h"
+#include "models/samples/samples.h"
 
 #include <gtest/gtest.h>
 

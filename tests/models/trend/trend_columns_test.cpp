@@ -34,105 +34,30 @@ TrendColumns columns_of(const Samples& samples, const FeatureList& list, std::si
   return test::must(TrendColumns::make(samples, list, most_rows));
 }
 
-// The drive curves int_0^u of (1 - u)^2, 2 u (1 - u) and u^2.
-std::vector<DriveCurve> drives() {
-  return {{kDepth_m, {1.0, -1.0, 1.0 / 3.0, 0.0}},
-          {kDepth_m, {0.0, 1.0, -2.0 / 3.0, 0.0}},
-          {kDepth_m, {0.0, 0.0, 1.0 / 3.0, 0.0}}};
-}
-// The friction curves 1 - (1 - u)^4, u and u^2.
-std::vector<DriveCurve> frictions() {
-  return {{kDepth_m, {4.0, -6.0, 4.0, -1.0}}, {kDepth_m, {1.0, 0.0, 0.0, 0.0}}, {kDepth_m, {0.0, 1.0, 0.0, 0.0}}};
-}
-
-// One filter for the features made by `spec_of` from each of these curves.
-template <typename SpecOf>
-FeatureFilter filter_of(const std::vector<DriveCurve>& curves, const SpecOf& spec_of) {
-  std::vector<FeatureSpec> specs;
-  for (const DriveCurve& curve : curves) specs.push_back(spec_of(curve));
-  return FeatureFilter(specs);
-}
-FeatureFilter branches(double time_s, double slowing = 0.0) {
-  return filter_of(drives(), [&](const DriveCurve& curve) {
-    FeatureSpec spec = test::spectrum({time_s}, curve);
-    spec.slowing = slowing;
-    return spec;
-  });
-}
-
-TEST(TrendColumns, AreTheTermsOfTheTrend) {
+// The columns times any weights are the trend of the model whose features they become.
+TEST(TrendColumns, TimesWeightsAreTheTrendOfTheModel) {
   const Samples samples = strokes();
   FeatureList list;
   list.add(FeatureKind::velocity);
-  list.add(FeatureKind::maxwell_spectrum, {0.17});
-  list.add(FeatureKind::maxwell_spectrum, {1.27});
+  list.add(FeatureKind::maxwell_spectrum, {0.05, 0.3});
+  list.features.back().slowing = 1.5;
   list.add(FeatureKind::stops, {2e-4});
-  list.add(FeatureKind::creep, {0.1});
+  list.add(FeatureKind::creep, {0.1, 1.0});
   const TrendColumns columns = columns_of(samples, list);
-  const std::vector<ElasticSpline> elastic = spline_basis();
-  ASSERT_EQ(columns.columns(), kElasticTerms + 2 * kViscosityCoefficients + 4 * kCurveTerms);
   ASSERT_EQ(columns.rows(), samples.contact);
-  ASSERT_GT(columns.count(), 1000u);
-  EXPECT_EQ(columns.stride(), 1u);
-  FeatureFilter memory[] = {branches(0.17), branches(1.27),
-                            filter_of(frictions(), [](const DriveCurve& curve) { return test::stops({2e-4}, curve); }),
-                            filter_of(frictions(), [](const DriveCurve& curve) { return test::creep({0.1}, curve); })};
-  std::size_t contact = 0;
-  for (std::size_t i = 0; i < samples.rows.size(); ++i) {
-    const Sample& sample = samples.rows[i];
-    for (FeatureFilter& filter : memory) filter.update(sample.tool, sample.motion);
-    if (!(sample.tool.position_m > 0.0)) continue;
-    const double* value = columns.terms().row(static_cast<Eigen::Index>(contact)).data();
-    const double u = sample.motion.position_m / kDepth_m;
-    const double v = sample.motion.velocity_m_per_s;
-    for (const ElasticSpline& curve : elastic) ASSERT_EQ(*value++, curve.at(std::min(u, 1.0)));
-    for (const double factor : {v, v / (1 + std::abs(v) / kThinning_m_per_s)}) {
-      for (const double basis : {(1 - u) * (1 - u), 2 * u * (1 - u), u * u})
-        ASSERT_NEAR(*value++, factor * basis, 1e-15);
-    }
-    for (FeatureFilter& filter : memory) {
-      // Other filters add up the same numbers of up to 1 in another order.
-      for (std::size_t k = 0; k < kCurveTerms; ++k) ASSERT_NEAR(*value++, filter.vector().values[k], 1e-13) << i;
-    }
-    ASSERT_EQ(columns.force_N(contact), 0.5);
-    ASSERT_EQ(columns.depth_m(contact), sample.motion.position_m);
-    ++contact;
-  }
-}
-
-TEST(TrendColumns, RelaxationThatDependsOnDepthIsThatOfTheFeatures) {
-  const Samples samples = strokes();
-  FeatureList list;
-  list.add(FeatureKind::maxwell_spectrum, {0.02, 0.3});
-  list.features.back().slowing = 2.0;
-  const TrendColumns columns = columns_of(samples, list);
-  FeatureFilter slowed = branches(0.3, 2.0);
-  FeatureFilter plain = branches(0.3);
+  Eigen::VectorXd x(columns.columns());
+  for (Eigen::Index k = 0; k < x.size(); ++k) x(k) = 0.3 + 0.1 * static_cast<double>(k % 7);
+  const FittedTrend fitted = fitted_trend(columns, x, true);
+  FeatureFilter filter(fitted.features);
+  const Eigen::VectorXd force_N = columns.terms() * x;
   Eigen::Index row = 0;
-  double largest = 0.0;
   for (const Sample& sample : samples.rows) {
-    const FeatureVector& vector = slowed.update(sample.tool, sample.motion);
-    plain.update(sample.tool, sample.motion);
+    const FeatureVector& vector = filter.update(sample.tool, sample.motion);
     if (!vector.in_contact) continue;
-    const auto terms = columns.terms().row(row++).tail<kCurveTerms>();
-    for (std::size_t k = 0; k < kCurveTerms; ++k) {
-      ASSERT_NEAR(terms(static_cast<Eigen::Index>(k)), vector.values[k], 1e-13);
-      largest = std::max(largest, std::abs(vector.values[k] - plain.vector().values[k]));
-    }
+    // Rounding of sums of forces of some newtons.
+    ASSERT_NEAR(fitted.trend.at(vector.values.data(), fitted.features), force_N(row++), 1e-11);
   }
-  EXPECT_GT(largest, 0.1) << "the slowing matters";
-}
-
-// A weighted sum of branch features is one branch with the combined drive: the filter is linear in it.
-TEST(TrendColumns, CombinedDriveIsTheWeightedSumOfTheBasis) {
-  const double weights[] = {0.5, 2.0, 0.25};
-  FeatureFilter basis = branches(0.3);
-  FeatureFilter one({test::spectrum({0.3}, combined_curve(FeatureKind::maxwell_spectrum, weights, kDepth_m))});
-  for (const Sample& sample : strokes().rows) {
-    const FeatureVector& parts = basis.update(sample.tool, sample.motion);
-    const double sum = 0.5 * parts.values[0] + 2.0 * parts.values[1] + 0.25 * parts.values[2];
-    ASSERT_NEAR(one.update(sample.tool, sample.motion).values[0], sum, 1e-12);  // rounding of 3,000 steps
-  }
+  EXPECT_EQ(row, force_N.size());
 }
 
 TEST(TrendColumns, WithoutVelocityOrTimesOnlyTheElasticColumnsAreLeft) {

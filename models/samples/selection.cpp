@@ -1,39 +1,97 @@
-#include "models/samples/profile_search.h"
+#include "models/samples/selection.h"
 
 #include <algorithm>
 #include <numeric>
 
+#include "engine/base/statistics.h"
+
 namespace palpate {
+namespace {
+
+double sum_of(const std::vector<double>& values) { return std::accumulate(values.begin(), values.end(), 0.0); }
+
+// The scores of the folds that have samples in all candidates.
+std::vector<double> scores_of(const FoldErrors& errors, std::span<const FoldErrors> candidates) {
+  std::vector<double> scores;
+  for (std::size_t k = 0; k < errors.counts.size(); ++k) {
+    const bool empty = std::ranges::any_of(candidates, [k](const FoldErrors& one) { return one.counts[k] == 0.0; });
+    if (empty) continue;
+    scores.push_back(std::log(errors.squares[k] / errors.counts[k] + kUnnoticed_jnd * kUnnoticed_jnd));
+  }
+  return scores;
+}
+
+constexpr double kStandardErrors = 2.0;
+
+std::vector<double> differences(const std::vector<double>& one, const std::vector<double>& other) {
+  std::vector<double> paired;
+  for (std::size_t k = 0; k < one.size(); ++k) paired.push_back(one[k] - other[k]);
+  return paired;
+}
+
+// Whether the mean of `one` does not exceed that of `best` significantly.
+bool is_adequate(const std::vector<double>& one, const std::vector<double>& best) {
+  const MeanValue more = mean_of(differences(one, best));
+  return more.value <= kStandardErrors * more.standard_error;
+}
+
+}  // namespace
+
+std::vector<double> deepest_elsewhere_m(std::span<const int> fold, std::span<const double> depth_m, int folds) {
+  std::vector<double> elsewhere_m(static_cast<std::size_t>(folds), 0.0);
+  for (std::size_t i = 0; i < fold.size(); ++i) {
+    for (int k = 0; k < folds; ++k) {
+      double& deepest_m = elsewhere_m[static_cast<std::size_t>(k)];
+      if (k != fold[i]) deepest_m = std::max(deepest_m, depth_m[i]);
+    }
+  }
+  return elsewhere_m;
+}
+
+double FoldErrors::rms() const {
+  const double count = sum_of(counts);
+  return count > 0.0 ? std::sqrt(sum_of(squares) / count) : 0.0;
+}
+
+double FoldErrors::rms_at_mean_score() const {
+  const std::vector<double> scores = scores_of(*this, {this, 1});
+  if (scores.empty()) return 0.0;
+  const double square = std::exp(sum_of(scores) / static_cast<double>(scores.size()));
+  return std::sqrt(std::max(0.0, square - kUnnoticed_jnd * kUnnoticed_jnd));
+}
+
+std::size_t best_score(std::span<const FoldErrors> candidates) {
+  std::size_t best = 0;
+  for (std::size_t i = 1; i < candidates.size(); ++i) {
+    const double score = sum_of(scores_of(candidates[i], candidates));
+    if (score < sum_of(scores_of(candidates[best], candidates))) best = i;
+  }
+  return best;
+}
+
+std::size_t simplest_adequate(std::span<const FoldErrors> candidates) {
+  const std::size_t best = best_score(candidates);
+  const std::vector<double> scores = scores_of(candidates[best], candidates);
+  for (std::size_t i = 0; i < best; ++i)
+    if (is_adequate(scores_of(candidates[i], candidates), scores)) return i;
+  return best;
+}
+
 namespace {
 
 constexpr double kGolden = 0.6180339887498949;
 
-double sum(const BlockCosts& costs) { return std::accumulate(costs.begin(), costs.end(), 0.0); }
-
-// Whether the sum of `one` exceeds the sum of `best` by at most one standard error of their paired differences.
-bool is_within_one_standard_error(const BlockCosts& one, const BlockCosts& best) {
-  const auto count = static_cast<double>(one.size());
-  const double more = sum(one) - sum(best);
-  if (count < 2.0) return more <= 0.0;
-  double squares = 0.0;
-  for (std::size_t k = 0; k < one.size(); ++k) squares += std::pow(one[k] - best[k] - more / count, 2);
-  return more <= std::sqrt(squares * count / (count - 1.0));
-}
-
-// Whether `one` is significantly worse than `best` (profile_search.h). The tenth of the mean block damps blocks with
-// small costs, whose relative differences are noise.
+// Whether `one` is significantly worse than `best` (selection.h). The tenth of the mean block damps blocks with small
+// costs, whose relative differences are noise.
 bool is_significantly_worse(const BlockCosts& one, const BlockCosts& best) {
-  const auto count = static_cast<double>(one.size());
-  const double least = 0.1 * sum(best) / count;
-  double mean = 0.0, squares = 0.0;
+  const double least = 0.1 * mean_of(best).value;
+  std::vector<double> shares;
   for (std::size_t b = 0; b < one.size(); ++b) {
     const double whole = one[b] + best[b] + least;
-    const double share = whole > 0.0 ? (one[b] - best[b]) / whole : 0.0;
-    mean += share / count;
-    squares += share * share;
+    shares.push_back(whole > 0.0 ? (one[b] - best[b]) / whole : 0.0);
   }
-  const double variance = std::max(0.0, squares / count - mean * mean) / std::max(1.0, count - 1.0);
-  return mean > 2.0 * std::sqrt(variance);
+  const MeanValue more = mean_of(shares);
+  return more.value > kStandardErrors * more.standard_error;
 }
 
 struct ScannedOffset {
@@ -54,7 +112,7 @@ ScannedOffset golden(const CostFunction& cost, double low, double high, double f
   ScannedOffset b = candidate_at(cost, low + kGolden * (high - low));
   // In 100 steps an interval shrinks by 1e-21, beyond the digits of any number.
   for (int step = 0; step < 100 && high - low > fine_step; ++step) {
-    if (sum(a.costs) < sum(b.costs)) {
+    if (sum_of(a.costs) < sum_of(b.costs)) {
       high = b.at;
       b = std::move(a);
       a = candidate_at(cost, high - kGolden * (high - low));
@@ -64,7 +122,7 @@ ScannedOffset golden(const CostFunction& cost, double low, double high, double f
       b = candidate_at(cost, low + kGolden * (high - low));
     }
   }
-  return sum(a.costs) < sum(b.costs) ? a : b;
+  return sum_of(a.costs) < sum_of(b.costs) ? a : b;
 }
 
 class Search {
@@ -111,12 +169,12 @@ class Search {
   void refine_valleys() {
     std::vector<std::size_t> valleys;
     for (std::size_t i = 0; i < scanned_.size(); ++i) {
-      const double here = sum(scanned_[i].costs);
-      const bool left = i == 0 || here <= sum(scanned_[i - 1].costs);
-      const bool right = i + 1 == scanned_.size() || here < sum(scanned_[i + 1].costs);
+      const double here = sum_of(scanned_[i].costs);
+      const bool left = i == 0 || here <= sum_of(scanned_[i - 1].costs);
+      const bool right = i + 1 == scanned_.size() || here < sum_of(scanned_[i + 1].costs);
       if (left && right) valleys.push_back(i);
     }
-    std::ranges::sort(valleys, {}, [&](std::size_t i) { return sum(scanned_[i].costs); });
+    std::ranges::sort(valleys, {}, [&](std::size_t i) { return sum_of(scanned_[i].costs); });
     valleys.resize(std::min<std::size_t>(valleys.size(), 4));
     std::vector<ScannedOffset> bottoms;
     for (const std::size_t valley : valleys) {
@@ -125,7 +183,7 @@ class Search {
                                std::min(range_.high, around + range_.coarse_step), range_.fine_step));
       scanned_.push_back(bottoms.back());
     }
-    best_ = *std::ranges::min_element(bottoms, {}, [](const ScannedOffset& one) { return sum(one.costs); });
+    best_ = *std::ranges::min_element(bottoms, {}, [](const ScannedOffset& one) { return sum_of(one.costs); });
     alone_ = std::ranges::none_of(bottoms, [&](const ScannedOffset& one) {
       return std::abs(one.at - best_.at) > 2.0 * range_.coarse_step && !is_significantly_worse(one.costs, best_.costs);
     });
@@ -142,7 +200,7 @@ class Search {
 
   // The minimum of the cost without one block: a parabola through the best offset tried and its neighbours.
   double best_without(std::size_t block) const {
-    const auto cost = [&](std::size_t i) { return sum(scanned_[i].costs) - scanned_[i].costs[block]; };
+    const auto cost = [&](std::size_t i) { return sum_of(scanned_[i].costs) - scanned_[i].costs[block]; };
     std::size_t best = 0;
     for (std::size_t i = 1; i < scanned_.size(); ++i) best = cost(i) < cost(best) ? i : best;
     const double at = scanned_[best].at;
@@ -163,10 +221,8 @@ class Search {
     const std::size_t count = best_.costs.size();
     std::vector<double> minima;
     for (std::size_t b = 0; b < count; ++b) minima.push_back(best_without(b));
-    const double mean = sum(minima) / static_cast<double>(count);
-    double squares = 0.0;
-    for (const double at : minima) squares += (at - mean) * (at - mean);
-    return std::max(std::sqrt(squares * static_cast<double>(count - 1) / static_cast<double>(count)), range_.fine_step);
+    // sqrt((n - 1) / n sum (x - mean)^2) is n - 1 times the standard error of the mean of the minima.
+    return std::max(static_cast<double>(count - 1) * mean_of(minima).standard_error, range_.fine_step);
   }
 
   const CostFunction& cost_;
@@ -184,7 +240,8 @@ OffsetEstimate unless_force_offset(OffsetEstimate shift, const CostFunction& cos
   if (!shift.identified || !shift.not_zero || !(most_N > 0.0)) return shift;
   // J, a sum of Huber's losses, has one minimum over the force offset.
   const ScannedOffset best = golden(cost, -most_N, most_N, 1e-3 * most_N);
-  if (!is_within_one_standard_error(best.costs, shift.minimum)) return shift;
+  const MeanValue more = mean_of(differences(best.costs, shift.minimum));
+  if (more.value > more.standard_error) return shift;
   shift.identified = false;
   shift.at = 0.0;
   shift.standard_error = kUnknownError;

@@ -1,11 +1,14 @@
-#include "models/correction/solve_weights.h"
+#include "models/correction/algebra.h"
 
 #include <gtest/gtest.h>
 
+#include <Eigen/QR>
 #include <Eigen/SVD>
+#include <algorithm>
 #include <cmath>
+#include <vector>
 
-#include "models/correction/projected_kernel.h"
+#include "models/model/kernels.h"
 #include "tests/support/plain_rbf.h"
 #include "tests/support/random_points.h"
 
@@ -26,7 +29,7 @@ Eigen::MatrixXd naive_matrix(const Sites& sites, KernelKind kernel, const Eigen:
 }
 
 RbfFunction solved(const Sites& sites, const Eigen::MatrixXd& centres) {
-  return solve_weights(sites, centres).function;
+  return solve_weights(sites, centres).function();
 }
 
 double worst_error(const RbfFunction& function, const Sites& sites) {
@@ -126,7 +129,7 @@ TEST(PenalisedWeights, WithEverySiteACentreItIsTheSmoothingSpline) {
       const auto all = solve_direct(sites);
       ASSERT_TRUE(all.ok());
       // Two algorithms for systems with condition numbers up to some 1e6.
-      EXPECT_LT(test::largest_difference(some, all->function, sites.points), 1e-7) << kernel_name(kernel);
+      EXPECT_LT(test::largest_difference(some, all->function(), sites.points), 1e-7) << kernel_name(kernel);
     }
   }
 }
@@ -172,7 +175,7 @@ TEST(TruncatedWeights, AreThoseOfThePapersPseudoInverse) {
     Eigen::Index rank_before = 0;
     for (const double truncation : {1e-2, 1e-4, 1e-9}) {
       sites.truncation = truncation;
-      const SolvedWeights solved = solve_weights(sites, centres);
+      const FittedCorrection solved = solve_weights(sites, centres);
       const PseudoInverse expected = pseudo_inverse(sites, centres);
       SCOPED_TRACE(std::string(kernel_name(kernel)) + " " + std::to_string(truncation));
       EXPECT_EQ(solved.rank, expected.rank);
@@ -182,8 +185,8 @@ TEST(TruncatedWeights, AreThoseOfThePapersPseudoInverse) {
       EXPECT_LT(solved.condition_number, 1.0 / truncation);
       // Rounding of the largest value over the smallest that is kept.
       const double tolerance = 1e-13 * expected.condition_number * expected.weights_and_tail.norm();
-      EXPECT_LT((solved.function.weights - expected.weights_and_tail.head(30)).norm(), tolerance);
-      EXPECT_LT((solved.function.tail - expected.weights_and_tail.tail(solved.function.tail.size())).norm(), tolerance);
+      EXPECT_LT((solved.function().weights - expected.weights_and_tail.head(30)).norm(), tolerance);
+      EXPECT_LT((solved.function().tail - expected.weights_and_tail.tail(solved.function().tail.size())).norm(), tolerance);
     }
     // 30 centres of which two coincide.
     EXPECT_EQ(rank_before, 29 + tail_size(tail_degree(kernel), 2)) << kernel_name(kernel);
@@ -207,8 +210,8 @@ TEST(PenalisedWeights, TellRankAndConditionNumber) {
   const Sites sites = smooth_sites(2, 300, 0.0, 2);
   Eigen::MatrixXd centres(2, 16);
   centres << sites.points.leftCols(8), sites.points.leftCols(8);
-  const SolvedWeights twice = solve_weights(sites, centres);
-  const SolvedWeights once = solve_weights(sites, centres.leftCols(8));
+  const FittedCorrection twice = solve_weights(sites, centres);
+  const FittedCorrection once = solve_weights(sites, centres.leftCols(8));
   // Without a penalty eight weights with three side conditions, and a tail of three.
   EXPECT_EQ(once.rank, 8 - 3 + 3);
   EXPECT_EQ(twice.rank, once.rank);
@@ -222,6 +225,85 @@ TEST(DistinctSites, KeepsTheFirstOfEachPoint) {
   sites.points << 1, 0, 1, 0, 2,  //
       3, 5, 3, 4, 0;
   EXPECT_EQ(distinct_sites(sites), (std::vector<Eigen::Index>{0, 1, 3, 4}));
+}
+
+// (c . r)^2 / |c'|^2 from a QR factorisation of all columns chosen so far.
+double gain_from_scratch(const Sites& sites, const CandidateGains& gains, const std::vector<Eigen::Index>& chosen,
+                         Eigen::Index site) {
+  const Eigen::MatrixXd tail = tail_matrix(tail_degree(KernelKind::cubic), sites.points);
+  Eigen::MatrixXd columns(sites.count(), tail.cols() + static_cast<Eigen::Index>(chosen.size()));
+  columns.leftCols(tail.cols()) = sites.row_scale.asDiagonal() * tail;
+  for (std::size_t k = 0; k < chosen.size(); ++k)
+    columns.col(tail.cols() + static_cast<Eigen::Index>(k)) = gains.columns({&chosen[k], 1});
+  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(columns);
+  const Eigen::MatrixXd q = qr.householderQ() * Eigen::MatrixXd::Identity(columns.rows(), columns.cols());
+  const auto outside = [&](Eigen::VectorXd v) {
+    for (int pass = 0; pass < 2; ++pass) v -= q * (q.transpose() * v);
+    return v;
+  };
+  const Eigen::VectorXd c = outside(gains.columns({&site, 1}));
+  const Eigen::VectorXd r = outside(sites.target_N.cwiseProduct(sites.row_scale));
+  return c.dot(r) * c.dot(r) / c.squaredNorm();
+}
+
+// Candidates are updated at various intervals: some at every step, some rarely. The
+// cached gains must equal those computed from scratch.
+TEST(CandidateGains, AreThoseOfAFreshLookHoweverLongAgoTheLastWas) {
+  const Sites sites = test::smooth_sites(4, 400, 0.005, 3);
+  CandidateGains gains(sites);
+  OrthogonalBasis basis(sites, 60);
+  std::vector<Eigen::Index> chosen;
+  for (Eigen::Index step = 0; step < 60; ++step) {
+    std::vector<Eigen::Index> looked_at{399};
+    for (Eigen::Index k = 0; k < 12; ++k) looked_at.push_back((step * 37 + k * 29) % 398);
+    gains.update(looked_at, basis);
+    const Eigen::Index next = looked_at[1];
+    if (step % 20 == 0 || step > 57)
+      for (const Eigen::Index site : looked_at) {
+        if (std::find(chosen.begin(), chosen.end(), site) != chosen.end()) {
+          EXPECT_EQ(gains.gain(site), 0.0) << "chosen already: site " << site;
+          continue;
+        }
+        const double expected = gain_from_scratch(sites, gains, chosen, site);
+        EXPECT_NEAR(gains.gain(site), expected, 1e-6 * expected) << "site " << site << " at step " << step;
+      }
+    if (std::find(chosen.begin(), chosen.end(), next) != chosen.end()) continue;
+    basis.add(gains.columns({&next, 1}));
+    chosen.push_back(next);
+  }
+  EXPECT_GT(chosen.size(), 50U);
+  const Eigen::Index never_seen = 398;
+  gains.update({&never_seen, 1}, basis);
+  const double expected = gain_from_scratch(sites, gains, chosen, never_seen);
+  EXPECT_NEAR(gains.gain(never_seen), expected, 1e-6 * expected);
+}
+
+// Close to a chosen centre a column is almost in the span of the basis. The difference
+// of squares then has no correct digits, but the orthogonalised column has.
+TEST(CandidateGains, KnowsAColumnAllButInsideTheBasis) {
+  Sites sites = test::smooth_sites(4, 300, 0.005, 5);
+  sites.points.col(1) = sites.points.col(0).array() + 1e-5;
+  sites.points.col(2) = sites.points.col(0);
+  CandidateGains gains(sites);
+  OrthogonalBasis basis(sites, 1);
+  const Eigen::Index chosen = 0;
+  basis.add(gains.columns({&chosen, 1}));
+  const std::vector<Eigen::Index> looked_at{1, 2};
+  gains.update(looked_at, basis);
+  const double expected = gain_from_scratch(sites, gains, {0}, 1);
+  EXPECT_NEAR(gains.gain(1), expected, 0.01 * expected);
+  EXPECT_EQ(gains.gain(2), 0.0) << "a repeated point adds nothing";
+}
+
+// Columns that differ by 1e-7 of their length: one pass of Gram-Schmidt leaves 1e-9 of each in the others.
+TEST(OrthogonalBasis, IsOrthogonalForColumnsThatAreAlmostTheSame) {
+  const Sites sites = test::smooth_sites(2, 200, 0.0, 3);
+  const Eigen::MatrixXd random = test::random_points(200, 11, 7);
+  OrthogonalBasis basis(sites, 10);
+  for (Eigen::Index k = 1; k <= 10; ++k) EXPECT_TRUE(basis.add(random.col(0) + 1e-7 * random.col(k)));
+  const Eigen::MatrixXd q = basis.data_and_columns().rightCols(basis.size());
+  const Eigen::MatrixXd error = q.transpose() * q - Eigen::MatrixXd::Identity(q.cols(), q.cols());
+  EXPECT_LT(error.cwiseAbs().maxCoeff(), 1e-13);
 }
 
 }  // namespace
