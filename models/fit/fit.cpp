@@ -112,6 +112,13 @@ void set_provenance(PreparedTraining& prepared, const TrainingScene& scene, cons
   provenance.relaxation = kFeatureNames[static_cast<std::size_t>(plan.features)];
 }
 
+// Root mean square of the errors over the JND at the predicted force.
+double mean_error_over_jnd(const std::vector<Prediction>& predictions, const JndLine& jnd) {
+  double squares = 0.0;
+  for (const Prediction& one : predictions) squares += std::pow(one.error_N / jnd.at(one.predicted_N), 2);
+  return predictions.empty() ? 0.0 : std::sqrt(squares / static_cast<double>(predictions.size()));
+}
+
 // The finished fraction of a fit after its choices, and after the method. The fits without each fold follow.
 constexpr double kChosen = 0.15;
 constexpr double kFitted = 0.6;
@@ -253,6 +260,7 @@ Result<MethodFit> fit_method(const PreparedTraining& prepared, const ModelPlan& 
     }
     if (!selected) return selected.error();
     fit.choices = *selected;
+    fit.error_over_jnd = selected->error_over_jnd;
     sites = chosen_sites(*selected, prepared, data);
     fit.notes.push_back(choices_text(*selected, asked.method->can_take(kTakesKernel)));
   }
@@ -289,7 +297,9 @@ Result<MethodFit> fit_method(const PreparedTraining& prepared, const ModelPlan& 
       if (!of_fold) return of_fold.error();
       of_folds.push_back(std::move(*of_fold));
     }
-    data.error_bound = fit_bound(predictions_of(*prepared.left_out, data, of_folds), data);
+    const std::vector<Prediction> predictions = predictions_of(*prepared.left_out, data, of_folds);
+    data.error_bound = fit_bound(predictions, data);
+    fit.error_over_jnd = mean_error_over_jnd(predictions, data.jnd);
   }
   if (const Status valid = check_forces(data); !valid) {
     return Error{"the " + data.name + " fit did not give a usable model (" + valid.error().message +

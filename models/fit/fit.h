@@ -78,6 +78,7 @@ struct MethodFit {
   std::vector<std::string> notes;        // sentences for the user
   std::optional<KernelKind> kernel{};    // of a method that takes one
   std::optional<OpenChoices> choices{};  // with Base::force
+  double error_over_jnd = 0.0;           // cross-validated: of the choices, or of the rows that were left out
   Eigen::Index rank = 0;                 // as in FittedCorrection
   double condition_number = 0.0;
   double seconds = 0.0;  // of ModelFits::fit: with its base, without the preparation

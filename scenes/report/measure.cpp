@@ -154,7 +154,7 @@ class Measurement {
 
   void finish(ModelResult& result) const {
     if (!result.plan) return;
-    const auto& [recorded, moved, surfaces] = evaluation_.models[result.place];
+    const auto& [recorded, moved, surfaces, began] = evaluation_.models[result.place];
     result.errors = recorded.unit_errors();
     result.moved = moved.summary();
     result.bound = recorded.bounds();
