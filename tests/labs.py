@@ -8,7 +8,8 @@ Recorded sets come first: every folder with train*.csv and test*.csv in ../share
 or in DIR. Virtual materials follow. All use positions only, without the accelerometer column of the virtual rig.
 Columns: the share [%] of the samples in contact within the JND, as recorded (aligned), for 0 N and every model; then,
 for the last model that is no baseline, the 99 % quantile and the maximum of the error in JND as recorded, the coverage
-of the 95 % bound and its median in JND, and the seconds of the fit. "Aligned" fits the surface of the test (also force
+of the 95 % bound and its median in JND, and the seconds of the fit. A test marked * continues a training recording, and the
+program is told so (replay --after). "Aligned" fits the surface of the test (also force
 zero and lag) to the forces of the test. It shows the error after registration of the rig and is not a prediction.
 
 The sets of one folder are one rig. Means are over rigs, each the mean of its tests, with a 95 % interval from a
@@ -58,6 +59,9 @@ MORE = {
     "ecoflex 100T": (["ecoflex_static/EF10_100T_train_A1"],
                      ["ecoflex_static/EF10_100T_test_A3", "ecoflex_static/EF10_100T_test_B2"]),
 }
+# Tests that are the next part of a training recording, so that a person would say: replay --after.
+AFTER = {"test_cycle2": "train_cycle1", "test_cycle3": "train_cycles1_2", "rearfoot_test_c96_100": "rearfoot_train_c90_95"}
+
 
 def run(palpate, *arguments):
     done = subprocess.run([palpate, *map(str, arguments)], stdout=subprocess.PIPE, stderr=subprocess.PIPE)
@@ -76,6 +80,7 @@ class Set:
 
     def __init__(self, name, train, tests, folder):
         self.name, self.rig, self.paths = name, train[0].parent.name, (train, tests)
+        self.after = [next((path for path in train if path.stem == AFTER.get(test.stem)), None) for test in tests]
         self.train, self.tests = ([baselines.Recording(path) for path in some] for some in (train, tests))
         self.refuse_leaks()
         self.deepest_m = max(one.position.max() for one in self.train)
@@ -166,10 +171,11 @@ def median(values):
     return known[len(known) // 2] if known else None
 
 
-def replayed(palpate, folder, path, recording):
+def replayed(palpate, folder, path, recording, after=None):
     """The figures of one model, and its forces."""
     forces = folder / (path.stem + "_forces.csv")
-    found = json.loads(run(palpate, "replay", "--recording", recording, "--model", path, "--json", "--force", "--out", forces))
+    found = json.loads(run(palpate, "replay", "--recording", recording, "--model", path, "--json", "--force", "--out", forces,
+                           *(["--after", after] if after else [])))
     rows = numpy.loadtxt(forces, delimiter=",", skiprows=1)
     return found["models"][0], rows[:, -1]
 
@@ -183,7 +189,7 @@ def of_seed(options, folder, one, model, seed):
     seconds = time.perf_counter() - began
     figures = []
     for index, test in enumerate(tests):
-        entry, forces = replayed(options.palpate, folder, path, test)
+        entry, forces = replayed(options.palpate, folder, path, test, one.after[index])
         bound = entry["predicted_error"] or {}
         held = bound.get("bound_95_held")
         figures.append({"share": 100 * entry["within_jnd"], "moved": 100 * entry["surface_moved"]["within_jnd"],
@@ -285,7 +291,7 @@ def table(sets, results, models):
     detailed = next((model for model in reversed(models) if model not in baselines.KINDS), models[-1])
     for one in sets:
         last = results[one.name, detailed]
-        nothing = ", ".join(f"{share_of_nothing(test):.1f}" for test in one.tests)
+        nothing = ", ".join(f"{share_of_nothing(test):.1f}" + "*" * bool(after) for test, after in zip(one.tests, one.after))
         lines.append(f"| {one.name} | {nothing} | "
                      + " | ".join(cells(results[one.name, model], share) for model in models) + " | "
                      + " | ".join(cells(last, lambda test, key=key, digits=digits: number(test[key], digits)) for key, digits in
