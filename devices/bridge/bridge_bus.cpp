@@ -4,7 +4,6 @@
 #include <cctype>
 #include <cmath>
 
-#include "devices/bridge/byte_stream.h"
 #include "engine/base/signals.h"
 #include "engine/base/text.h"
 #include "engine/live/device.h"

@@ -1,4 +1,4 @@
-#include "devices/bridge/byte_stream.h"
+#include "devices/bridge/bridge_bus.h"
 
 #include <fcntl.h>
 #include <linux/serial.h>

@@ -9,8 +9,6 @@
 #include <cstring>
 #include <mutex>
 
-#include "devices/hid/hid_protocols.h"
-
 namespace palpate {
 namespace {
 

@@ -4,9 +4,31 @@
 // report when a signal ends the program.
 #pragma once
 
+#include <array>
+
 #include "devices/link/device_link.h"
+#include "devices/link/device_protocol.h"
 
 namespace palpate {
+
+// The supported USB HID protocols (README.md says how to add one).
+// Thread guarantee: slow side.
+
+extern const DeviceProtocol kOpenFfBoardProtocol;
+extern const DeviceProtocol kSpaceMouseProtocol;
+
+// A node matches at most one of them.
+inline constexpr std::array kHidProtocols = {
+    &kOpenFfBoardProtocol,
+    &kSpaceMouseProtocol,
+};
+
+// The protocol of `node`, by its ids; null: unknown.
+inline const DeviceProtocol* hid_protocol_of(const DeviceNode& node) {
+  for (const DeviceProtocol* protocol : kHidProtocols)
+    if (protocol->matches(node)) return protocol;
+  return nullptr;
+}
 
 class HidapiBus final : public DeviceBus {
  public:

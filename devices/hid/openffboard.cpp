@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "devices/firmware/wire.h"
-#include "devices/hid/hid_protocols.h"
+#include "devices/hid/hidapi_bus.h"
 
 namespace palpate {
 namespace {

@@ -5,7 +5,7 @@
 #include <cstdlib>
 
 #include "devices/firmware/wire.h"
-#include "devices/hid/hid_protocols.h"
+#include "devices/hid/hidapi_bus.h"
 
 namespace palpate {
 namespace {

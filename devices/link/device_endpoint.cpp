@@ -45,14 +45,20 @@ void DeviceEndpoint::report_arrived(const std::uint8_t* bytes, std::size_t size,
 
 // By the confirmed command, in the device's own clock: exact, however samples and commands were delayed, held or
 // grouped. A new command may have replaced the one before just before this sample. Without confirmations, the force of
-// a sample acts at most until the command that follows the next one.
+// a sample acts at most until the command that follows the next one. Commands of an earlier stream do not count.
 ForceAge DeviceEndpoint::force_age(const DeviceReading& reading, double now_s) noexcept {
-  if (!calibration_.protocol->confirms) return {kUsb_s, now_s - std::exchange(arrived_s_, now_s) + kUsb_s + kWaits_s};
-  const std::uint64_t sent = sent_[reading.confirmed % sent_.size()].load(std::memory_order_relaxed);
-  const bool known = (sent >> 32) == ((kFromSample >> 32) | (reading.confirmed & 0xFFFF));
-  const auto from_us = static_cast<std::uint32_t>(sent);
-  const std::uint32_t before_us = std::exchange(acted_from_us_, from_us);
   constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+  if (!calibration_.protocol->confirms) {
+    const double gap_s = now_s - std::exchange(arrived_s_, now_s);
+    if (!(gap_s < StreamMonitor::kLongestSilence_s)) return {kUnknown, kUnknown};
+    return {kUsb_s, gap_s + kUsb_s + kWaits_s};
+  }
+  if (std::exchange(aged_stream_, monitor_.state().streams) != monitor_.state().streams) began_us_ = reading.time_us;
+  const std::uint64_t sent = sent_[reading.confirmed % sent_.size()].load(std::memory_order_relaxed);
+  const auto from_us = static_cast<std::uint32_t>(sent);
+  const bool known = (sent >> 32) == ((kFromSample >> 32) | (reading.confirmed & 0xFFFF)) &&
+                     static_cast<std::int32_t>(from_us - began_us_) >= 0;
+  const std::uint32_t before_us = std::exchange(acted_from_us_, from_us);
   if (!std::exchange(acted_known_, known) || !known) return {kUnknown, kUnknown};
   const auto since_s = [&](std::uint32_t us) { return 1e-6 * static_cast<std::int32_t>(reading.time_us - us); };
   return {since_s(from_us), since_s(before_us)};

@@ -1,4 +1,4 @@
-#include "devices/link/stream_monitor.h"
+#include "devices/link/device_endpoint.h"
 
 #include <algorithm>
 #include <cmath>
@@ -113,13 +113,14 @@ void StreamMonitor::move(const DeviceReading& reading, double now_s) noexcept {
 // No hand keeps a tool within a count for seconds against kFirm_N, nor while a smaller force changes; a small constant
 // force is no evidence.
 void StreamMonitor::watch_stuck(double now_s, double force_N) noexcept {
-  // For a device without zeroing, only motion ends the fault: a small force does not.
-  if (!(std::abs(force_N) >= kPushing_N) && !(stuck_ && protocol_.absolute)) still_since_s_ = now_s;
-  if (still_since_s_ == now_s) least_N_ = most_N_ = force_N;
+  const bool pushing = std::abs(force_N) >= kPushing_N;
+  if (!pushing || still_since_s_ == now_s) least_N_ = most_N_ = force_N;
   least_N_ = std::min(least_N_, force_N);
   most_N_ = std::max(most_N_, force_N);
-  const bool pushed = std::abs(force_N) >= kFirm_N || most_N_ - least_N_ >= kPushing_N;
-  stuck_ = now_s - still_since_s_ > calibration_.stuck_after_s && (stuck_ || pushed);
+  const bool evident = std::abs(force_N) >= kFirm_N || most_N_ - least_N_ >= kPushing_N;
+  // For a device without zeroing, only motion ends the fault: a small force does not.
+  if (!evident && !(stuck_ && protocol_.absolute)) still_since_s_ = now_s;
+  stuck_ = now_s - still_since_s_ > calibration_.stuck_after_s;
   if (stuck_) lose(device_fault::kStuck, now_s);
 }
 

@@ -3,11 +3,8 @@
 #include <utility>
 
 #include "devices/bridge/bridge_bus.h"
-#include "devices/hid/hid_protocols.h"
 #include "devices/hid/hidapi_bus.h"
 #include "devices/link/device_endpoint.h"
-#include "devices/registry/auto_device.h"
-#include "devices/virtual/replay_device.h"
 #include "devices/virtual/simulated_devices.h"
 #include "engine/base/text.h"
 
@@ -115,7 +112,8 @@ MadeDevice open_device(const std::string& name, const DeviceRequest& request, co
     if (const Status status = (*device)->open(); !status) return status.error();
     return device;
   }
-  return Error{"unknown device \"" + printable(name) + "\", expected one of: " + joined(names) + " (palpate devices explains)"};
+  return Error{"unknown device \"" + printable(name) + "\", expected one of: " + joined(names) +
+               " (palpate devices explains)"};
 }
 
 }  // namespace palpate

@@ -1,4 +1,4 @@
-#include "devices/virtual/hand_motion.h"
+#include "devices/virtual/simulated_devices.h"
 
 #include <algorithm>
 #include <cmath>

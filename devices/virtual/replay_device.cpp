@@ -1,4 +1,4 @@
-#include "devices/virtual/replay_device.h"
+#include "devices/virtual/simulated_devices.h"
 
 #include <algorithm>
 #include <cmath>

@@ -97,9 +97,10 @@ struct Impedance {
   double stiffness_N_per_m = 0.0, damping_Ns_per_m = 0.0;
 };
 
-// The delay T of the loop: halfway between the least and the largest age of the force that acted in the last second.
-// Thus it includes transport, waits, and half the time for which a force is held, however samples and commands are
-// grouped. The largest age counts, not the mean, because one late group is enough to start an oscillation.
+// The delay T of the loop: halfway between the least and the largest age of the force that acted within 1/16 s, the
+// largest such value of the last second. Thus it includes transport, waits, and half the time for which a force is
+// held, however samples and commands are grouped. The largest counts, not the mean, because one late group is enough to
+// start an oscillation.
 class LoopDelay {
  public:
   // `time_s` does not decrease. O(1).
@@ -115,23 +116,24 @@ class LoopDelay {
     part_ = std::max(part_, part);
   }
   // 0: nothing was added in the last second.
-  double largest_s() const noexcept { return all().largest_s; }
+  double largest_s() const noexcept {
+    double largest_s = 0.0;
+    for (const Ages& part : parts_) largest_s = std::max(largest_s, part.largest_s);
+    return largest_s;
+  }
   double delay_s() const noexcept {
-    const Ages ages = all();
-    return ages.largest_s > 0.0 ? 0.5 * (ages.least_s + ages.largest_s) : 0.0;
+    double delay_s = 0.0;
+    // The present part is not complete.
+    for (std::int64_t i = 1; i < kParts; ++i) delay_s = std::max(delay_s, parts_[(part_ + i) % kParts].middle_s());
+    return delay_s > 0.0 ? delay_s : parts_[part_ % kParts].middle_s();
   }
 
  private:
   struct Ages {
     double least_s = std::numeric_limits<double>::infinity(), largest_s = 0.0;
+    double middle_s() const noexcept { return largest_s > 0.0 ? 0.5 * (least_s + largest_s) : 0.0; }
   };
-  static constexpr std::int64_t kParts = 17;  // of 1/16 s; the newest one is not complete
-  Ages all() const noexcept {
-    Ages all;
-    for (const Ages& part : parts_)
-      all = {std::min(all.least_s, part.least_s), std::max(all.largest_s, part.largest_s)};
-    return all;
-  }
+  static constexpr std::int64_t kParts = 17;
 
   std::array<Ages, kParts> parts_{};
   std::int64_t part_ = 0;
@@ -251,7 +253,7 @@ class ForceGuard {
     const double since_s = time_s_ - std::exchange(sampled_s_, time_s_);
     // A force that is written in a tick acts from the next tick on at the latest, until the next sample is used.
     if (age.largest_s == 0.0 && since_s > 0.0) delay_.add({tick_s, since_s + tick_s}, time_s_);
-    if (age.largest_s > 0.0) delay_.add(age, time_s_);
+    if (age.least_s > 0.0) delay_.add(age, time_s_);
   }
 
   // The force of a model of this impedance, scaled as `wanted`; the scale moves there with a time constant of 50 ms.

@@ -12,7 +12,6 @@
 #include <type_traits>
 
 #include "engine/live/device.h"
-#include "engine/live/faults.h"
 #include "engine/live/force_guard.h"
 #include "engine/live/force_limiter.h"
 #include "engine/live/handover.h"

@@ -26,7 +26,7 @@ namespace palpate {
 
 inline constexpr std::size_t kMaxModels = 16;
 
-// The values are bits of the live loop's faults (engine/live/faults.h).
+// The values are bits of the live loop's faults (engine/live/device.h).
 enum class TickFault : std::uint8_t {
   none = 0,
   bad_sample = 1,        // a value of the sample is not finite: the state is kept

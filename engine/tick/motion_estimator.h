@@ -1,6 +1,6 @@
 // Causal estimates of position and velocity of the tool from quantised positions, with a measured acceleration or
 // velocity if there is one, by two Kalman filters. models/METHOD.md has the equations, motion_filter.inc the code,
-// which exported models share. On simulated hands (devices/virtual/hand_motion.h) behind a 30 um encoder the velocity
+// which exported models share. On simulated hands (HandMotion) behind a 30 um encoder the velocity
 // error is 0.54 of that of first-order adaptive windowing at its best settings, and 0.08 of it with an accelerometer
 // (tests/engine/tick/motion_estimator_test.cpp).
 // Thread guarantee: one thread at a time; `update` is wait-free, allocates nothing and never throws.

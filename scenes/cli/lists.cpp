@@ -6,8 +6,6 @@
 #include <vector>
 
 #include "devices/bridge/bridge_bus.h"
-#include "devices/bridge/byte_stream.h"
-#include "devices/hid/hid_protocols.h"
 #include "devices/hid/hidapi_bus.h"
 #include "devices/link/device_link.h"
 #include "devices/registry/device_registry.h"

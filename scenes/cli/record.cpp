@@ -10,7 +10,7 @@
 #include <thread>
 #include <utility>
 
-#include "devices/bridge/byte_stream.h"
+#include "devices/bridge/bridge_bus.h"
 #include "devices/registry/device_registry.h"
 #include "engine/base/atomic_file.h"
 #include "engine/base/signals.h"

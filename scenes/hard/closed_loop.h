@@ -24,7 +24,7 @@ struct Grip {
 
 // From a light contact of a finger to a clenched fist: stiffness and damping rise
 // together with the grip (Hajian & Howe 1997; Hasser & Cutkosky 2002), the damping is
-// 0.5 to 0.7 of critical. `braced` is the hand of devices/virtual/hand_motion.h.
+// 0.5 to 0.7 of critical. `braced` is the hand of devices/virtual/simulated_devices.h.
 // The last is a free mass without stiffness and damping.
 inline const std::array<Grip, 4> kGrips{{{"relaxed", 0.08, 150.0, 3.5},
                                          {"braced", 0.12, 800.0, 14.0},

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <string_view>
 
-#include "devices/virtual/replay_device.h"
+#include "devices/virtual/simulated_devices.h"
 #include "engine/base/text.h"
 #include "engine/live/pacer.h"
 #include "models/model/fitted_model.h"

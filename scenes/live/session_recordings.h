@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "devices/virtual/hand_motion.h"
+#include "devices/virtual/simulated_devices.h"
 #include "engine/base/result.h"
 #include "engine/recording/recording.h"
 

@@ -9,7 +9,7 @@
 #include <span>
 #include <string_view>
 
-#include "devices/virtual/hand_motion.h"
+#include "devices/virtual/simulated_devices.h"
 #include "engine/base/result.h"
 
 namespace palpate {

@@ -5,7 +5,7 @@
 
 #include "devices/bridge/bridge_bus.h"
 #include "devices/firmware/bridge_protocol.h"
-#include "devices/hid/hid_protocols.h"
+#include "devices/hid/hidapi_bus.h"
 #include "devices/link/device_endpoint.h"
 #include "tests/support/fuzz_checks.h"
 #include "tests/support/simulated_device.h"

@@ -10,7 +10,7 @@
 #include <memory>
 #include <optional>
 
-#include "devices/bridge/byte_stream.h"
+#include "devices/bridge/bridge_bus.h"
 #include "tests/support/bridge_session.h"
 #include "tests/support/message_parts.h"
 #include "tests/support/temporary_folder.h"

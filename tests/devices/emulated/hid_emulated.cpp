@@ -12,7 +12,6 @@
 #include <string>
 #include <string_view>
 
-#include "devices/hid/hid_protocols.h"
 #include "devices/hid/hidapi_bus.h"
 #include "devices/link/device_endpoint.h"
 #include "engine/base/signals.h"

@@ -1,6 +1,6 @@
 // Devices by their ids; encoding and decoding of every report; other bytes are refused.
-#include "devices/hid/hid_protocols.h"
 #include "devices/bridge/bridge_bus.h"
+#include "devices/hid/hidapi_bus.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Valid and broken calibration files.
-#include "devices/hid/hid_protocols.h"
+#include "devices/hid/hidapi_bus.h"
 #include "devices/link/device_protocol.h"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // Conversion of the device's time to the host's clock.
-#include "devices/link/stream_monitor.h"
+#include "devices/link/device_endpoint.h"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // Host and device in simulated time: every fault sets the force to zero, and the
 // condition for its return.
 #include "devices/link/device_endpoint.h"
-#include "devices/hid/hid_protocols.h"
+#include "devices/hid/hidapi_bus.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // Finding and opening a device; a device with its threads, in real time, on a fake bus.
 #include "devices/link/device_link.h"
-#include "devices/hid/hid_protocols.h"
+#include "devices/hid/hidapi_bus.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // Streams of readings, without transport. device_endpoint_test.cpp tests them with
 // reports, force and time.
-#include "devices/link/stream_monitor.h"
+#include "devices/link/device_endpoint.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <cstdint>
 
 #include "devices/bridge/bridge_bus.h"
-#include "devices/hid/hid_protocols.h"
+#include "devices/hid/hidapi_bus.h"
 
 namespace palpate {
 namespace {

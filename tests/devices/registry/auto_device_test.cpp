@@ -1,12 +1,12 @@
 // The cap of a SpaceMouse as a tool.
-#include "devices/registry/auto_device.h"
+#include "devices/registry/device_registry.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
 #include "devices/firmware/wire.h"
-#include "devices/hid/hid_protocols.h"
+#include "devices/hid/hidapi_bus.h"
 #include "tests/support/fake_device_bus.h"
 
 namespace palpate {

@@ -7,7 +7,7 @@
 #include <limits>
 #include <thread>
 
-#include "devices/registry/auto_device.h"
+#include "devices/registry/device_registry.h"
 
 namespace palpate {
 namespace {

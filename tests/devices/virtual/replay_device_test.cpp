@@ -1,5 +1,5 @@
 // A recording as a device: every row once, unchanged, at the recorded rate.
-#include "devices/virtual/replay_device.h"
+#include "devices/virtual/simulated_devices.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "engine/live/faults.h"
+#include "engine/live/device.h"
 
 #include <gtest/gtest.h>
 

@@ -8,8 +8,7 @@
 #include <cmath>
 #include <limits>
 
-#include "devices/registry/auto_device.h"
-#include "devices/virtual/replay_device.h"
+#include "devices/registry/device_registry.h"
 #include "devices/virtual/simulated_devices.h"
 #include "engine/tick/replay.h"
 #include "tests/support/example_model.h"

@@ -11,7 +11,7 @@
 #include <random>
 #include <vector>
 
-#include "devices/virtual/hand_motion.h"
+#include "devices/virtual/simulated_devices.h"
 
 namespace palpate {
 namespace {

@@ -10,7 +10,6 @@
 #include <optional>
 #include <thread>
 
-#include "devices/virtual/replay_device.h"
 #include "devices/virtual/simulated_devices.h"
 #include "tests/support/full_disk.h"
 #include "tests/support/live_doubles.h"
