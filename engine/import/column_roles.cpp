@@ -1,10 +1,10 @@
-#include "engine/import/column_roles.h"
-
+// The roles of columns by their names and units, and by elimination.
 #include <algorithm>
 #include <charconv>
 #include <utility>
 
 #include "engine/base/text.h"
+#include "engine/import/table_parts.h"
 
 namespace palpate {
 namespace {
@@ -12,24 +12,30 @@ namespace {
 // The words of each role. The claim of a column to a role is strongest if its whole name is one of the words, weaker if
 // one of its words is, and weakest if a word contains one (German compounds: "Standardkraft").
 constexpr std::string_view kTimeWords =
-    "time t zeit temps timestamp stamp seconds secs elapsed x_value millis micros clock uhrzeit pruefzeit testzeit "
+    "time t zeit temps timestamp stamp seconds secs sec nsecs nanosec milliseconds elapsed x_value millis micros clock "
+    "uhrzeit pruefzeit testzeit "
     "zeitstempel datetime tiempo \xE6\x97\xB6\xE9\x97\xB4";
 constexpr std::string_view kPositionWords =
     "position pos weg displacement disp depth extension stroke crosshead travel compression indentation penetration "
     "allongement traversenweg standardweg verschiebung eindringtiefe tiefe hub deplacement enfoncement desplazamiento "
-    "posicion recorrido profundidad \xE4\xBD\x8D\xE7\xA7\xBB height encoder x y z";
+    "posicion recorrido profundidad \xE4\xBD\x8D\xE7\xA7\xBB height distance gap deflection encoder x y z";
 constexpr std::string_view kForceWords =
     "force f kraft load last fn fx fy fz charge loadcell newton effort fuerza carga \xE5\x8A\x9B "
     "\xE8\xBD\xBD\xE8\x8D\xB7 \xE8\x8D\xB7\xE9\x87\x8D";
-// Words of columns that have none of these roles, whatever other word is in the name.
+// Words of columns that are never a position or a force, whatever else is in the name and whatever the unit.
+constexpr std::string_view kNeverWords =
+    "torque moment drehmoment couple mx my mz tx ty tz acceleration accel acc ax ay az beschleunigung gyro angle "
+    "winkel "
+    "velocity speed geschwindigkeit vitesse velocidad temperature temp stress spannung";
+// Words of columns that have no role unless they have its unit.
 constexpr std::string_view kOtherWords =
-    "torque moment temperature temp voltage current status velocity speed geschwindigkeit acceleration accel stress "
-    "strain spannung dehnung seq index id frame cycle zyklus tx ty tz mx my mz comment rate volt orientation";
+    "voltage current status strain dehnung seq index id frame cycle zyklus comment rate volt orientation unit";
+// Words of columns that say what a row belongs to.
+constexpr std::string_view kIdentifyingWords =
+    "specimen sample probe id sensor channel device test trial run series kanal pruefling versuch";
 // Words of columns that are a second choice: commanded and not measured values, raw values, and times that restart
 // ("Cycle Elapsed Time" beside "Total Time").
 constexpr std::string_view kSecondWords = "target desired setpoint soll sollwert command cmd reference raw cycle";
-
-constexpr std::string_view kVelocityWords = "velocity speed geschwindigkeit vitesse velocidad";
 
 constexpr int kWholeName = 6;
 constexpr int kOneWord = 4;
@@ -108,7 +114,9 @@ Claims claims_of(const ForeignColumn& column) {
     if (!column.parts.foreign_unit.empty() && !volts) claims[role] = std::min(claims[role], 1);
     if (claims[role] > 0 && any_word_in(kSecondWords, words)) claims[role] = std::max(1, claims[role] - kSecondChoice);
   }
-  if (column.constant) claims[0] = 0;
+  if (any_word_in(kNeverWords, words)) return {};
+  // "Time_F" is a time.
+  if (claims[0] > 0 && !words.empty() && is_word_of(kTimeWords, words.front())) claims[1] = claims[2] = 0;
   // Only the strongest claims of a column count.
   const int strongest = *std::max_element(claims.begin(), claims.end());
   for (int& claim : claims) claim = claim < strongest ? 0 : claim;
@@ -117,6 +125,52 @@ Claims claims_of(const ForeignColumn& column) {
   if (any_word_in(kOtherWords, words) && !unit) claims = {};
   return claims;
 }
+
+// The columns with the strongest claim to a role; none without a claim.
+std::vector<std::size_t> strongest_columns(const std::vector<Claims>& claims, std::size_t role) {
+  int strongest = 1;
+  for (const Claims& claim : claims) strongest = std::max(strongest, claim[role]);
+  std::vector<std::size_t> best;
+  for (std::size_t i = 0; i < claims.size(); ++i)
+    if (claims[i][role] == strongest) best.push_back(i);
+  return best;
+}
+
+// A role other than `role` that is the whole name of a column; kRoles: none.
+std::size_t contradicted_role(const ForeignColumn& column, std::size_t role) {
+  const Claims claims = name_claims(column, words_of(column.parts.name));
+  const auto whole = std::find(claims.begin(), claims.end(), kWholeName);
+  return claims[role] > 0 ? kRoles : static_cast<std::size_t>(whole - claims.begin());
+}
+
+std::string flag_for(std::size_t role, const std::string& what) {
+  return std::string("--columns ") + kRoleNames[role] + "=" + what;
+}
+
+// The column that the user means, or a problem.
+std::size_t find_column(const std::vector<ForeignColumn>& columns, std::size_t role, const std::string& wanted,
+                        std::string& problem) {
+  const std::string lower = lower_ascii(wanted);
+  std::vector<std::size_t> found;
+  // The header as it is, else in any case, else without its unit.
+  for (int way = 0; way < 3 && found.empty(); ++way) {
+    for (std::size_t i = 0; i < columns.size(); ++i) {
+      const std::string& header = columns[i].header;
+      if (way == 0 ? header == wanted : lower_ascii(way == 1 ? header : columns[i].parts.name) == lower)
+        found.push_back(i);
+    }
+  }
+  std::size_t number = 0;
+  const auto parsed = std::from_chars(wanted.data(), wanted.data() + wanted.size(), number);
+  const bool is_number = parsed.ec == std::errc() && parsed.ptr == wanted.data() + wanted.size();
+  if (found.empty() && is_number && number >= 1 && number <= columns.size()) found.push_back(number - 1);
+  if (found.size() == 1) return found.front();
+  problem = found.empty() ? "found no column \"" + printable(wanted) + "\" for the " + kRoleNames[role]
+                          : "found " + std::to_string(found.size()) + " columns called \"" + printable(wanted) + '"';
+  return 0;
+}
+
+}  // namespace
 
 // The parts of a header. What follows a mark of units after a word for a role ("Kraft/Stein", "Weg in Furlong") is an
 // unknown unit.
@@ -138,76 +192,6 @@ NameAndUnit header_parts(std::string_view header) {
   return parts;
 }
 
-// The columns with the strongest claim to a role; none without a claim.
-std::vector<std::size_t> strongest_columns(const std::vector<Claims>& claims, std::size_t role) {
-  int strongest = 1;
-  for (const Claims& claim : claims) strongest = std::max(strongest, claim[role]);
-  std::vector<std::size_t> best;
-  for (std::size_t i = 0; i < claims.size(); ++i)
-    if (claims[i][role] == strongest) best.push_back(i);
-  return best;
-}
-
-// A role other than `role` that is the whole name of a column; kRoles: none.
-std::size_t contradicted_role(const ForeignColumn& column, std::size_t role) {
-  const Claims claims = name_claims(column, words_of(column.parts.name));
-  const auto whole = std::find(claims.begin(), claims.end(), kWholeName);
-  return claims[role] > 0 ? kRoles : static_cast<std::size_t>(whole - claims.begin());
-}
-
-// The factor of a unit such as "mm/s" to m/s; 0 if `text` is no unit of velocity.
-double velocity_unit(std::string_view text) {
-  const std::size_t slash = text.find('/');
-  if (slash == std::string_view::npos) return 0.0;
-  const auto length = find_unit(text.substr(0, slash));
-  const auto time = find_unit(text.substr(slash + 1));
-  if (!length || !time || length->quantity != Quantity::length || time->quantity != Quantity::time) return 0.0;
-  return length->to_si / time->to_si;
-}
-
-std::string flag_for(std::size_t role, const std::string& what) {
-  return std::string("--columns ") + kRoleNames[role] + "=" + what;
-}
-
-Result<std::size_t> find_column(const std::vector<ForeignColumn>& columns, std::size_t role,
-                                const std::string& wanted) {
-  const std::string lower = lower_ascii(wanted);
-  std::vector<std::size_t> found;
-  // The header as it is, else in any case, else without its unit.
-  for (int way = 0; way < 3 && found.empty(); ++way) {
-    for (std::size_t i = 0; i < columns.size(); ++i) {
-      const auto& [header, parts, constant] = columns[i];
-      if (way == 0 ? header == wanted : lower_ascii(way == 1 ? header : parts.name) == lower) found.push_back(i);
-    }
-  }
-  if (found.size() == 1) return found.front();
-  if (found.size() > 1) {
-    return Error{"found " + std::to_string(found.size()) + " columns called \"" + printable(wanted) +
-                 "\", expected one; give the number, as in " + flag_for(role, std::to_string(found.front() + 1)) +
-                 "; the columns are " + list_columns(columns)};
-  }
-  std::size_t number = 0;
-  const auto parsed = std::from_chars(wanted.data(), wanted.data() + wanted.size(), number);
-  const bool is_number = parsed.ec == std::errc() && parsed.ptr == wanted.data() + wanted.size();
-  if (is_number && number >= 1 && number <= columns.size()) return number - 1;
-  return Error{"found no column \"" + printable(wanted) + "\" for the " + kRoleNames[role] + ", expected one of " +
-               list_columns(columns)};
-}
-
-Error no_column(const std::vector<ForeignColumn>& columns, std::size_t role, bool has_header) {
-  const std::string time_advice = role == 0 ? ", or --rate HZ if the rows are evenly spaced" : "";
-  if (!has_header) {
-    return Error{"found no header, expected names of columns; say which column is which: --columns " +
-                 std::string(role == 0 ? "time=1,position=2,force=3" : "position=1,force=2") + time_advice +
-                 "; the first row is " + list_columns(columns)};
-  }
-  return Error{std::string("found no column that is clearly the ") + kRoleNames[role] + "; add " +
-               flag_for(role, "NAME") + " (a name or a number)" + time_advice + "; the columns are " +
-               list_columns(columns)};
-}
-
-}  // namespace
-
 bool NamedRoles::contradicts(const NamedRoles& other) const {
   const auto differs = [&](std::size_t role) {
     return column[role] > 0 && other.column[role] > 0 && column[role] != other.column[role];
@@ -215,9 +199,10 @@ bool NamedRoles::contradicts(const NamedRoles& other) const {
   return differs(1) && differs(2);
 }
 
-NamedRoles named_roles(const std::vector<std::string_view>& fields) {
+NamedRoles named_roles(const Fields& fields) {
   std::vector<Claims> claims;
-  for (const std::string_view field : fields) claims.push_back(claims_of({std::string(field), header_parts(field)}));
+  for (const std::string_view field : fields)
+    claims.push_back(claims_of({.header = std::string(field), .parts = header_parts(field)}));
   NamedRoles named;
   for (std::size_t role = 0; role < kRoles; ++role) {
     const std::vector<std::size_t> best = strongest_columns(claims, role);
@@ -229,91 +214,87 @@ NamedRoles named_roles(const std::vector<std::string_view>& fields) {
   return named;
 }
 
-std::vector<ForeignColumn> foreign_columns(const TableLayout& layout,
-                                           const std::vector<std::vector<std::string_view>>& rows) {
-  const auto& first = rows.front();
-  std::vector<ForeignColumn> columns(layout.columns);
-  for (std::size_t i = 0; i < columns.size(); ++i) {
-    ForeignColumn& column = columns[i];
-    if (!layout.names.empty()) {
-      column.header = layout.names[i];
-      column.parts = header_parts(column.header);
-    } else if (i < first.size()) {
-      column.header = first[i];
-    }
-    if (i < layout.units.size()) {
-      if (const auto unit = find_unit(layout.units[i]))
-        column.parts.unit = unit;
-      else if (!column.parts.unit && layout.units[i].find_first_not_of("-[]() ") != std::string_view::npos)
-        column.parts.foreign_unit = layout.units[i];
-    }
-    const auto changes = [&](const auto& row) { return i < std::min(row.size(), first.size()) && row[i] != first[i]; };
-    column.constant = rows.size() > 1 && std::none_of(rows.begin(), rows.end(), changes);
-  }
-  return columns;
-}
-
 std::string list_columns(const std::vector<ForeignColumn>& columns) {
   std::vector<std::string> names;
   for (const ForeignColumn& column : columns)
-    names.push_back(std::to_string(names.size() + 1) + " \"" + printable(column.header) + "\"");
+    names.push_back(std::to_string(names.size() + 1) + " \"" + printable(column.header) + '"' +
+                    (column.constant ? " (constant)" : ""));
   return joined(names);
 }
 
-Result<RoleColumns> choose_columns(const std::vector<ForeignColumn>& columns, const RoleRequest& request,
-                                   bool has_header, bool needs_time) {
-  RoleColumns chosen;
-  const auto choose = [&](std::size_t role, std::size_t index, bool guessed) {
-    chosen[role] = {index + 1, has_header ? columns[index].header : "", "", guessed};
-  };
+RoleChoice choose_columns(const std::vector<ForeignColumn>& columns, const RoleRequest& request, bool has_header,
+                          bool needs_time) {
+  RoleChoice choice;
   std::vector<Claims> claims;
-  for (const ForeignColumn& column : columns) claims.push_back(has_header ? claims_of(column) : Claims{});
-  for (std::size_t role = needs_time ? 0 : 1; role < kRoles; ++role) {
-    if (request[role].empty()) continue;
-    const auto found = find_column(columns, role, request[role]);
-    if (!found) return found.error();
-    choose(role, *found, false);
-    claims[*found] = {};
+  std::vector<bool> excluded;
+  for (const ForeignColumn& column : columns) {
+    claims.push_back(has_header ? claims_of(column) : Claims{});
+    const bool never = has_header && any_word_in(kNeverWords, words_of(column.parts.name));
+    excluded.push_back(never || column.constant || column.is_units);
+    if (excluded.back()) claims.back() = {};
+    if (column.is_clock && !column.constant) claims.back() = {std::max(1, claims.back()[0]), 0, 0};
   }
-  for (std::size_t role = needs_time ? 0 : 1; role < kRoles; ++role) {
-    if (chosen[role].number > 0) continue;
-    const std::vector<std::size_t> best = strongest_columns(claims, role);
-    if (best.empty()) return no_column(columns, role, has_header);
+  for (std::size_t role = 0; role < kRoles; ++role) {
+    if (request[role].empty() || (role == 0 && !needs_time)) continue;
+    const std::size_t found = find_column(columns, role, request[role], choice.problem);
+    if (!choice.problem.empty()) return choice;
+    choice.number[role] = found + 1;
+    claims[found] = {};
+    excluded[found] = true;
+  }
+  const auto offer = [&](std::size_t role, const std::vector<std::size_t>& numbers) {
+    for (const std::size_t i : numbers)
+      choice.readings.push_back({flag_for(role, std::to_string(i + 1)), '"' + printable(columns[i].header) + '"'});
+  };
+  for (std::size_t role = 0; role < kRoles; ++role) {
+    std::vector<std::size_t> best = strongest_columns(claims, role);
+    for (std::size_t i = 0; role == 0 && i < columns.size(); ++i)
+      if (claims[i][0] > 0 && !any_word_in(kSecondWords, words_of(columns[i].parts.name)))
+        choice.times.push_back(i + 1);
+    if (choice.number[role] > 0) continue;
+    if (role == 0 && !needs_time && best.size() != 1) continue;
+    if (best.empty()) {
+      choice.problem =
+          has_header ? std::string("found no column that is clearly the ") + kRoleNames[role] : "found no header";
+      // What is left when the other roles are taken.
+      for (std::size_t i = 0; i < columns.size(); ++i)
+        if (!excluded[i] && claims[i] == Claims{} && !identifies(columns[i])) best.push_back(i);
+      if (has_header || role > 0) offer(role, best);
+      if (!has_header && role == 0 && columns.size() == 3)
+        choice.readings.push_back({"--columns time=1,position=2,force=3", "the usual order"});
+      return choice;
+    }
     if (best.size() > 1) {
-      std::vector<std::string> flags;
-      for (const std::size_t index : best) flags.push_back(flag_for(role, std::to_string(index + 1)));
-      return Error{"found " + std::to_string(best.size()) + " columns that can be the " + kRoleNames[role] + "; add " +
-                   joined(flags, " or ") + "; the columns are " + list_columns(columns)};
+      choice.problem = "found " + std::to_string(best.size()) + " columns that can be the " + kRoleNames[role];
+      offer(role, best);
+      if (role > 0) return choice;
+      choice.number[0] = best.front() + 1;  // unless they are one clock
+      continue;
     }
     const std::size_t index = best.front(), named = contradicted_role(columns[index], role);
-    if (named < kRoles)
-      return Error{"found column \"" + printable(columns[index].header) + "\", named as a " + kRoleNames[named] +
-                   ", with the unit " + std::string(columns[index].parts.unit->name) + " of a " + kRoleNames[role] +
-                   ", expected a name and a unit that agree; correct the header, or confirm the role with " +
-                   flag_for(role, std::to_string(index + 1)) + "; the columns are " + list_columns(columns)};
-    choose(role, index, true);
-  }
-  for (std::size_t a = 0; a < kRoles; ++a) {
-    for (std::size_t b = 0; b < a; ++b) {
-      if (chosen[a].number == 0 || chosen[a].number != chosen[b].number) continue;
-      return Error{"found column \"" + printable(columns[chosen[a].number - 1].header) + "\" for the " + kRoleNames[b] +
-                   " and the " + kRoleNames[a] + ", expected a column for each; the columns are " +
-                   list_columns(columns)};
+    if (named < kRoles) {
+      choice.problem = "found column \"" + printable(columns[index].header) + "\", named as a " + kRoleNames[named] +
+                       ", with the unit " + std::string(columns[index].parts.unit->name) + " of a " + kRoleNames[role];
+      offer(role, best);
+      return choice;
     }
+    choice.number[role] = index + 1;
+    excluded[index] = true;
   }
-  return chosen;
+  for (std::size_t a = 1; a < kRoles; ++a)
+    for (std::size_t b = 0; b < a; ++b)
+      if (choice.number[a] > 0 && choice.number[a] == choice.number[b])
+        choice.problem = "found column \"" + printable(columns[choice.number[a] - 1].header) + "\" for the " +
+                         kRoleNames[b] + " and the " + kRoleNames[a];
+  return choice;
 }
 
-std::optional<VelocityColumn> find_velocity(const std::vector<ForeignColumn>& columns) {
-  std::optional<VelocityColumn> found;
-  for (std::size_t i = 0; i < columns.size(); ++i) {
-    const std::vector<std::string> words = words_of(columns[i].parts.name);
-    const double to_si = velocity_unit(columns[i].parts.foreign_unit);
-    if (to_si == 0.0 || !any_word_in(kVelocityWords, words) || any_word_in(kSecondWords, words)) continue;
-    if (found) return std::nullopt;
-    found = VelocityColumn{i, to_si};
-  }
-  return found;
+double fraction_unit_s(const ForeignColumn& column) {
+  const std::vector<std::string> words = words_of(column.parts.name);
+  const auto unit = column.parts.unit ? column.parts.unit : words.empty() ? std::nullopt : find_unit(words.back());
+  return unit && unit->quantity == Quantity::time && unit->to_si < 1.0 ? unit->to_si : 0.0;
 }
+
+bool identifies(const ForeignColumn& column) { return any_word_in(kIdentifyingWords, words_of(column.parts.name)); }
 
 }  // namespace palpate

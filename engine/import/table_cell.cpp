@@ -1,5 +1,3 @@
-#include "engine/import/table_cell.h"
-
 #include <algorithm>
 #include <array>
 #include <charconv>
@@ -7,25 +5,21 @@
 #include <cmath>
 #include <iterator>
 #include <string>
-#include <utility>
 
 #include "engine/base/statistics.h"
 #include "engine/base/text.h"
-#include "engine/import/units.h"
+#include "engine/import/table_parts.h"
 
 namespace palpate {
 namespace {
 
 // Longer cells are no numbers; doubles written out take at most 24 characters.
 constexpr std::size_t kLongestNumber = 64;
+constexpr std::int64_t kDay_s = 86400;
+// The step of the times is the median of at most so many.
+constexpr std::size_t kStepRows = 2000;
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
-
-constexpr std::int64_t kDay_s = 86400;
-
-double since(const TableTime& time, const TableTime& first) {
-  return static_cast<double>(time.whole - first.whole) + (time.fraction - first.fraction);
-}
 
 // Parses and removes up to `most` digits at the start of `text`.
 bool parse_digits(std::string_view& text, std::size_t most, int& value) {
@@ -41,18 +35,29 @@ bool skip_one_of(std::string_view& text, std::string_view any_of) {
   return true;
 }
 
-// Parses and removes a date at the start of `text`. Only differences between rows count, so that within a day either
-// reading of 3/5/2024 is adequate.
-bool parse_date(std::string_view& text, std::int64_t& days) {
+bool parse_month(std::string_view& text, int& month) {
+  if (parse_digits(text, 2, month)) return true;
+  constexpr std::string_view kMonths = "janfebmaraprmayjunjulaugsepoctnovdec";
+  const std::size_t at = text.size() < 3 ? std::string_view::npos : kMonths.find(lower_ascii(text.substr(0, 3)));
+  if (at == std::string_view::npos || at % 3 != 0) return false;
+  month = static_cast<int>(at / 3) + 1;
+  text.remove_prefix(3);
+  return true;
+}
+
+// Parses and removes a date at the start of `text`.
+bool parse_date(std::string_view& text, bool day_first, std::int64_t& days) {
   std::string_view rest = text;
   std::array<int, 3> parts{};
   if (!parse_digits(rest, 4, parts[0])) return false;
   const std::string_view mark = rest.substr(0, 1);
-  if (!skip_one_of(rest, "-/.") || !parse_digits(rest, 2, parts[1]) || !skip_one_of(rest, mark) ||
-      !parse_digits(rest, 4, parts[2]))
-    return false;
-  if (parts[0] < 32) std::swap(parts[0], parts[2]);
-  if (parts[1] > 12) std::swap(parts[1], parts[2]);
+  if (!skip_one_of(rest, "-/.")) return false;
+  const bool named = !rest.empty() && !is_digit(rest.front());  // the month
+  if (!parse_month(rest, parts[1]) || !skip_one_of(rest, mark) || !parse_digits(rest, 4, parts[2])) return false;
+  if (parts[0] < 32) {
+    if (!day_first && !named) std::swap(parts[0], parts[1]);
+    std::swap(parts[0], parts[2]);
+  }
   if (parts[0] < 32 || parts[1] < 1 || parts[1] > 12 || parts[2] < 1 || parts[2] > 31) return false;
   // Days since 1970; the library's calendar takes the 31st of every month.
   days = (std::chrono::sys_days(std::chrono::year(parts[0]) / parts[1] / 1).time_since_epoch()).count() + parts[2] - 1;
@@ -63,79 +68,27 @@ bool parse_date(std::string_view& text, std::int64_t& days) {
 bool has_date(std::string_view text) {
   text = trimmed(text);
   std::int64_t days = 0;
-  return parse_date(text, days);
+  return parse_date(text, true, days) || parse_date(text, false, days);
 }
 
-// A plain number as a time.
-std::optional<TableTime> parse_number_time(std::string_view text, char decimal) {
-  TableTime time;
-  text = trimmed(text);
-  const auto whole = std::from_chars(text.data(), text.data() + text.size(), time.whole);
-  const std::string_view rest = text.substr(static_cast<std::size_t>(whole.ptr - text.data()));
-  if (whole.ec == std::errc() && rest.empty()) return time;
-  if (whole.ec == std::errc() && time.whole > 0 && rest.front() == decimal &&
-      rest.find_first_not_of("0123456789", 1) == std::string_view::npos) {
-    parse_table_number(std::string("0").append(rest), decimal, time.fraction);
-    return time;
-  }
-  double value = 0.0;
-  constexpr double kLargest = 9e18;  // fits in 64 bits
-  if (!parse_table_number(text, decimal, value) || std::abs(value) > kLargest) return std::nullopt;
-  return TableTime{static_cast<std::int64_t>(std::floor(value)), value - std::floor(value)};
+// Removes the days of a duration: "0 days 00:00:01.5".
+bool skip_days(std::string_view& text, std::int64_t& days) {
+  std::string_view rest = text;
+  int count = 0;
+  if (!parse_digits(rest, 4, count) || !rest.starts_with(" day")) return false;
+  rest.remove_prefix(rest.starts_with(" days") ? 5 : 4);
+  text = trimmed(rest);
+  days = count;
+  return true;
 }
 
-std::optional<TableTime> parse_clock_time(std::string_view text) {
-  text = trimmed(text);
-  std::int64_t days = 0;
-  if (parse_date(text, days)) {
-    if (!skip_one_of(text, "T ")) return std::nullopt;
-    text = trimmed(text);
-  }
-  int first = 0, second = 0, third = 0;
-  if (!parse_digits(text, 4, first) || !skip_one_of(text, ":") || !parse_digits(text, 2, second) || second > 59)
-    return std::nullopt;
-  const bool has_hours = skip_one_of(text, ":");
-  if (has_hours && (!parse_digits(text, 2, third) || third > 60)) return std::nullopt;
-  TableTime time;
-  if (text.starts_with('.') || text.starts_with(',')) {
-    const std::size_t end = std::min(text.find_first_not_of("0123456789", 1), text.size());
-    const std::string digits = std::string("0.").append(text.substr(1, end - 1));
-    std::from_chars(digits.data(), digits.data() + digits.size(), time.fraction);
-    text.remove_prefix(end);
-  }
-  const std::int64_t hours = has_hours ? first : 0;
-  time.whole = days * kDay_s + hours * 3600 + (has_hours ? second : first) * 60 + (has_hours ? third : second);
-  text = trimmed(text);
-  const std::string half = lower_ascii(text.substr(0, 2));
-  if (half == "am" || half == "pm") {
-    if (half == "pm" && first < 12) time.whole += kDay_s / 2;
-    if (half == "am" && first == 12) time.whole -= kDay_s / 2;
-    text.remove_prefix(2);
-  }
-  // The time zone, "Z" or "+01:00", is the same in every row.
-  const bool ends = text.empty() || text == "Z" || text.front() == '+' || text.front() == '-';
-  return ends ? std::optional(time) : std::nullopt;
-}
-
-// Fewer times do not show that they are regular. The first and the last one may have fewer rows.
-constexpr std::size_t kLeastTimes = 6;
-// Fewer rows for each time are single repetitions.
-constexpr double kLeastRows = 1.5;
-// The deviation from the mean that the jitter of a logger explains, at least one row; rows and steps may exceed it in
-// one of twenty.
-constexpr double kJitter = 0.15;
-constexpr double kRegularShare = 0.95;
-// A longer step is a pause, after which the rows are not evenly spaced.
-constexpr double kPauseSteps = 1.5;
-
-// Rows with one time.
-struct Group {
-  double time_s = 0.0, rows = 0.0;
-};
-
-bool is_regular(const std::vector<double>& values, double middle, double tolerance) {
-  const auto near = std::ranges::count_if(values, [&](double value) { return std::abs(value - middle) <= tolerance; });
-  return static_cast<double>(near) >= kRegularShare * static_cast<double>(values.size());
+// "Z", "UTC", "+01:00", "-0500"
+bool is_time_zone(std::string_view text) {
+  if (text.empty() || text == "Z" || text == "UTC") return true;
+  int hours = 0, minutes = 0;
+  if (!skip_one_of(text, "+-") || !parse_digits(text, 2, hours)) return false;
+  skip_one_of(text, ":");
+  return text.empty() || (parse_digits(text, 2, minutes) && text.empty());
 }
 
 }  // namespace
@@ -154,7 +107,7 @@ bool parse_table_number(std::string_view text, char decimal, double& value) {
     std::ranges::remove_copy(whole, std::back_inserter(plain), mark);
     std::string grouped = with_thousands(plain);
     std::ranges::replace(grouped, ',', mark);
-    const bool unmistakable = plain.size() + 2 <= point || point < text.size() || mark == '\'';
+    const bool unmistakable = plain.size() + 2 <= point || point < text.size() || mark == '\'' || mark == ' ';
     if (grouped != whole || !std::ranges::all_of(plain, is_digit) || !unmistakable) return false;
     whole = plain;
   }
@@ -162,42 +115,146 @@ bool parse_table_number(std::string_view text, char decimal, double& value) {
   char* end = std::ranges::copy(whole, buffer.data()).out;
   if (point < text.size()) *end++ = '.';
   end = std::ranges::copy(text.substr(std::min(point + 1, text.size())), end).out;
+  std::ranges::replace_if(
+      buffer.data(), end, [](char c) { return c == 'D' || c == 'd'; }, 'e');  // of Fortran
   if (parse_number(buffer.data(), end, value) != end) return false;
   if (negative) value = -value;
   return true;
 }
 
-bool is_missing_value(std::string_view text) {
-  return is_word_of("nan -nan inf -inf +inf 1.#qnan n/a na null none -", lower_ascii(trimmed(text)));
+std::optional<TableCell> parse_table_cell(std::string_view text, char decimal) {
+  TableCell cell;
+  if (parse_table_number(text, decimal, cell.value)) return cell;
+  text = trimmed(text);
+  const std::size_t end = text.find_last_of("0123456789.,");
+  if (end + 1 >= text.size() || !parse_table_number(text.substr(0, end + 1), decimal, cell.value)) return std::nullopt;
+  cell.unit = find_unit(text.substr(end + 1));
+  return cell.unit ? std::optional(cell) : std::nullopt;
 }
 
-bool is_of_a_clock(std::string_view field) { return has_date(field) || parse_clock_time(field); }
+bool is_missing_value(std::string_view text) {
+  return is_word_of(
+      "nan -nan inf -inf +inf 1.#qnan n/a #n/a na null none nil - -- --- ---- ----- ol ovl ovld ovr over "
+      "overload error err",
+      lower_ascii(trimmed(text)));
+}
 
-double RowTimes::examine(const std::vector<std::string_view>& fields) {
-  clock_ = !fields.empty() && !parse_number_time(fields.front(), decimal_) && parse_clock_time(fields.front());
-  has_date_ = clock_ && has_date(fields.front());
+bool is_of_a_clock(std::string_view field) {
+  return has_date(field) || RowTimes::parse_clock(field, true) || RowTimes::parse_clock(field, false);
+}
+
+// A plain number as a time.
+std::optional<RowTimes::Time> RowTimes::parse_number(std::string_view text, char decimal) {
+  Time time;
+  text = trimmed(text);
+  const auto whole = std::from_chars(text.data(), text.data() + text.size(), time.whole);
+  const std::string_view rest = text.substr(static_cast<std::size_t>(whole.ptr - text.data()));
+  if (whole.ec == std::errc() && rest.empty()) return time;
+  if (whole.ec == std::errc() && time.whole > 0 && rest.front() == decimal &&
+      rest.find_first_not_of("0123456789", 1) == std::string_view::npos) {
+    parse_table_number(std::string("0").append(rest), decimal, time.fraction);
+    return time;
+  }
+  const auto cell = parse_table_cell(text, decimal);
+  constexpr double kLargest = 9e18;  // fits in 64 bits
+  if (!cell || std::abs(cell->value) > kLargest) return std::nullopt;
+  return Time{static_cast<std::int64_t>(std::floor(cell->value)), cell->value - std::floor(cell->value)};
+}
+
+std::optional<RowTimes::Time> RowTimes::parse_clock(std::string_view text, bool day_first) {
+  text = trimmed(text);
+  std::int64_t days = 0;
+  if (parse_date(text, day_first, days)) {
+    if (!skip_one_of(text, "T ")) return std::nullopt;
+    text = trimmed(text);
+  } else {
+    skip_days(text, days);
+  }
+  int first = 0, second = 0, third = 0;
+  if (!parse_digits(text, 4, first) || !skip_one_of(text, ":") || !parse_digits(text, 2, second) || second > 59)
+    return std::nullopt;
+  const bool has_hours = skip_one_of(text, ":");
+  if (has_hours && (!parse_digits(text, 2, third) || third > 60)) return std::nullopt;
+  Time time;
+  if (text.starts_with('.') || text.starts_with(',')) {
+    const std::size_t end = std::min(text.find_first_not_of("0123456789", 1), text.size());
+    const std::string digits = std::string("0.").append(text.substr(1, end - 1));
+    std::from_chars(digits.data(), digits.data() + digits.size(), time.fraction);
+    text.remove_prefix(end);
+  }
+  const std::int64_t hours = has_hours ? first : 0;
+  time.whole = days * kDay_s + hours * 3600 + (has_hours ? second : first) * 60 + (has_hours ? third : second);
+  text = trimmed(text);
+  const std::string half = lower_ascii(text.substr(0, 2));
+  if (half == "am" || half == "pm") {
+    if (half == "pm" && first < 12) time.whole += kDay_s / 2;
+    if (half == "am" && first == 12) time.whole -= kDay_s / 2;
+    text.remove_prefix(2);
+  }
+  return is_time_zone(trimmed(text)) ? std::optional(time) : std::nullopt;  // the same in every row
+}
+
+Status RowTimes::examine(const Fields& cells, char decimal) {
+  decimal_ = decimal;
+  const auto used = [](std::string_view cell) { return !cell.empty() && !is_missing_value(cell); };
+  const auto first = std::ranges::find_if(cells, used);
+  if (first == cells.end()) return {};
+  clock_ = !parse_number(*first, decimal_) && is_of_a_clock(*first);
+  has_date_ = clock_ && has_date(*first);
+  whole_ = true;
+  // The order of day and month in which every cell is a date; of two the one in which the recording is shorter.
+  std::optional<double> shortest_s;
+  for (const bool day_first : {true, false}) {
+    if (!has_date_) break;
+    std::optional<Time> begin, last;
+    bool all = true;
+    for (const std::string_view cell : cells) {
+      if (!used(cell)) continue;
+      const auto time = parse_clock(cell, day_first);
+      all = all && (time || !is_of_a_clock(cell));
+      if (time && !begin) begin = time;
+      if (time) last = time;
+    }
+    if (!all || !begin) continue;
+    const double seconds = std::abs(since(*last, *begin));
+    if (!shortest_s || seconds < *shortest_s) shortest_s = seconds, day_first_ = day_first;
+  }
   std::vector<double> steps;
-  std::optional<TableTime> last;
+  std::optional<Time> last;
   std::size_t intervals = 0;  // also those without a step
-  for (const std::string_view field : fields) {
-    const auto time = parse(field);
-    if (!time) break;
+  for (const std::string_view cell : cells) {
+    if (!used(cell)) continue;
+    const auto time = parse(cell);
+    if (!time) {
+      // Cells with digits that are neither text between the rows nor damaged: all are like the first one.
+      if (last || cell.find_first_of("0123456789") == std::string_view::npos) continue;
+      return Error{"found the time \"" + printable(cell) +
+                   "\", which is no number and no time that is understood; write seconds (0.010), or "
+                   "hours:minutes:seconds with a decimal mark (14:03:22.010), or, if the rows are evenly spaced, add "
+                   "--rate HZ"};
+    }
+    if (!last) first_cell_ = static_cast<double>(time->whole) + time->fraction;
     const double step = last ? since(*time, *last) : -1.0;
-    if (step > 0.0) steps.push_back(step);
-    if (step >= 0.0) ++intervals;
+    if (intervals < kStepRows && step > 0.0) steps.push_back(step);
+    if (intervals < kStepRows && step >= 0.0) ++intervals;
+    whole_ = whole_ && time->fraction == 0.0;
     last = time;
   }
-  if (steps.empty()) return 0.0;
-  return nth_smallest(steps, steps.size() / 2) * static_cast<double>(steps.size()) / static_cast<double>(intervals);
+  if (steps.empty()) return {};
+  const auto count = static_cast<double>(intervals);
+  for (const double step : steps) mean_step_ += step / count;
+  median_step_ = nth_smallest(steps, steps.size() / 2) * static_cast<double>(steps.size()) / count;
+  return {};
 }
 
-std::optional<TableTime> RowTimes::parse(std::string_view field) const {
-  return clock_ ? parse_clock_time(field) : parse_number_time(field, decimal_);
-}
-
-std::optional<double> RowTimes::since_first(std::string_view field) {
-  auto time = parse(field);
+std::optional<double> RowTimes::since_first(std::string_view cell, std::string_view fraction) {
+  auto time = parse(cell);
   if (!time) return std::nullopt;
+  if (fraction_s_ > 0.0) {
+    double part = 0.0;
+    if (!parse_table_number(fraction, decimal_, part)) return std::nullopt;
+    time->fraction += fraction_s_ * part;
+  }
   if (!first_) first_ = time;
   time->whole += midnights_ * kDay_s;
   if (clock_ && !has_date_ && last_ - since(*time, *first_) > 0.5 * static_cast<double>(kDay_s)) {
@@ -205,40 +262,6 @@ std::optional<double> RowTimes::since_first(std::string_view field) {
     time->whole += kDay_s;
   }
   return last_ = since(*time, *first_);
-}
-
-RepeatedTimes find_repeated_times(const std::vector<RecordingRow>& rows) {
-  RepeatedTimes found;
-  std::vector<Group> groups;
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    if (i == 0 || rows[i].time_s != rows[i - 1].time_s) {
-      groups.push_back({rows[i].time_s, 1.0});
-      continue;
-    }
-    groups.back().rows += 1.0;
-    ++found.rows;
-    found.copies =
-        found.copies && rows[i].position_m == rows[i - 1].position_m && rows[i].force_N == rows[i - 1].force_N;
-  }
-  if (found.rows == 0 || groups.size() < kLeastTimes) return found;
-  std::vector<double> steps_s, counts;
-  double inner_rows = 0.0;
-  for (std::size_t i = 1; i + 1 < groups.size(); ++i) {
-    counts.push_back(groups[i].rows);
-    steps_s.push_back(groups[i + 1].time_s - groups[i].time_s);
-    inner_rows += groups[i].rows;
-  }
-  found.step_s = nth_smallest(steps_s, steps_s.size() / 2);
-  found.mean_rate_Hz = inner_rows / (groups.back().time_s - groups[1].time_s);
-  // The rows between two changes of the time are known to one row.
-  const double whole_Hz = std::round(found.mean_rate_Hz);
-  if (std::abs(whole_Hz - found.mean_rate_Hz) * inner_rows <= 2.0 * found.mean_rate_Hz) found.mean_rate_Hz = whole_Hz;
-  const double mean_rows = inner_rows / static_cast<double>(counts.size());
-  const bool even = mean_rows >= kLeastRows && is_regular(counts, mean_rows, std::max(1.0, kJitter * mean_rows)) &&
-                    is_regular(steps_s, found.step_s, kJitter * found.step_s) &&
-                    *std::ranges::max_element(steps_s) <= kPauseSteps * found.step_s;
-  if (even) found.rate_Hz = found.mean_rate_Hz;
-  return found;
 }
 
 }  // namespace palpate

@@ -4,10 +4,7 @@
 #include <utility>
 
 #include "engine/base/text.h"
-#include "engine/import/column_roles.h"
-#include "engine/import/table_cell.h"
-#include "engine/import/table_layout.h"
-#include "engine/import/units.h"
+#include "engine/import/table_parts.h"
 
 namespace palpate {
 namespace {
@@ -31,7 +28,7 @@ std::string_view without_comment_mark(std::string_view line) {
 }
 
 // In a header separated by blanks, joins units in brackets with the name before.
-void join_bracketed(std::vector<std::string_view>& fields) {
+void join_bracketed(Fields& fields) {
   std::size_t kept = 0;
   for (const std::string_view field : fields) {
     if (kept > 0 && (field.front() == '[' || field.front() == '(')) {
@@ -44,7 +41,7 @@ void join_bracketed(std::vector<std::string_view>& fields) {
   fields.resize(kept);
 }
 
-void split_at_wide_gaps(std::string_view line, std::vector<std::string_view>& fields) {
+void split_at_wide_gaps(std::string_view line, Fields& fields) {
   fields.clear();
   while (!(line = trimmed(line)).empty()) {
     const std::size_t end = std::min(line.find("  "), line.find('\t'));
@@ -53,48 +50,41 @@ void split_at_wide_gaps(std::string_view line, std::vector<std::string_view>& fi
   }
 }
 
-// Splits a line above the table by the separator of the table. Returns whether it has a field for each column.
-bool split_header(std::string_view line, const TableLayout& layout, std::vector<std::string_view>& fields) {
+// Splits a line of names: by the separator of the table, as one of R, whose row numbers have no name, or by any other
+// separator that gives a name for each column. Returns which of these; none: the fields are those of the first.
+enum class Split { own, other, none };
+Split split_names(std::string_view line, std::string_view first_row, const TableLayout& layout, Fields& fields) {
   const std::string_view bare = without_comment_mark(line);
   const bool blanks = layout.delimiter.is_blanks();
   const auto fits = [&] { return blanks ? fields.size() == layout.columns : fields.size() >= layout.columns; };
   for (const std::string_view text : {line, bare}) {
     split_table_fields(text, layout.delimiter, fields);
-    if (fits()) return true;
+    if (fits()) return Split::own;
     if (!blanks) continue;
     split_at_wide_gaps(text, fields);
-    if (fits()) return true;
+    if (fits()) return Split::own;
     split_table_fields(text, layout.delimiter, fields);
     join_bracketed(fields);
-    if (fits()) return true;
+    if (fits()) return Split::own;
   }
-  return false;
-}
-
-// Splits a line by any separator that gives as many fields as the table has columns.
-bool split_otherwise(std::string_view line, const TableLayout& layout, std::vector<std::string_view>& fields) {
-  return std::ranges::any_of(kDelimiters, [&](const Delimiter& other) {
-    split_table_fields(without_comment_mark(line), other, fields);
-    return fields.size() == layout.columns;
-  });
-}
-
-// Splits a header of a table of R: the column of row numbers has no name, so the header has one field less.
-bool split_header_of_row_names(std::string_view line, std::string_view first_row, const TableLayout& layout,
-                               std::vector<std::string_view>& fields) {
-  double number = 0.0;
-  std::vector<std::string_view> row;
+  Fields row, names;
   split_table_fields(first_row, layout.delimiter, row);
-  if (row.empty() || !parse_table_number(row.front(), '.', number) || number != 1.0) return false;
-  std::vector<std::string_view> names;
   split_table_fields(line, layout.delimiter, names);
-  if (names.size() + 1 != layout.columns) return false;
-  fields = std::move(names);
-  fields.insert(fields.begin(), std::string_view());
-  return true;
+  if (!row.empty() && row.front() == "1" && names.size() + 1 == layout.columns) {
+    fields = std::move(names);
+    fields.insert(fields.begin(), std::string_view());
+    return Split::own;
+  }
+  for (const Delimiter& other : kDelimiters) {
+    split_table_fields(bare, other, names);
+    if (names.size() != layout.columns) continue;
+    fields = std::move(names);
+    return Split::other;
+  }
+  return Split::none;
 }
 
-bool is_names_row(const std::vector<std::string_view>& fields) {
+bool is_names_row(const Fields& fields) {
   std::size_t names = 0;
   for (const std::string_view field : fields) {
     double value = 0.0;
@@ -113,7 +103,7 @@ struct UnitCount {
   bool decides() const { return known > 0 && known + others >= 2 && known + others > words; }
 };
 
-UnitCount count_units(const std::vector<std::string_view>& fields) {
+UnitCount count_units(const Fields& fields) {
   UnitCount count;
   for (const std::string_view field : fields) {
     if (field.empty() || field == "-" || field == "[]" || field == "[-]") continue;
@@ -126,7 +116,7 @@ UnitCount count_units(const std::vector<std::string_view>& fields) {
 // A line above the table.
 struct Line {
   std::uint64_t number = 0;  // from 1
-  std::vector<std::string_view> fields;
+  Fields fields;
   bool fits = true;  // a field for each column
   bool own = true;   // split by the separator of the table
   NamedRoles roles;
@@ -148,35 +138,55 @@ struct Line {
   }
 };
 
-Line read_line(std::string_view text, std::string_view first_row, std::size_t widest, const TableLayout& layout) {
+Line read_line(std::string_view text, std::string_view first_row, const TableLayout& layout) {
   Line line;
-  line.own = split_header(text, layout, line.fields) || split_header_of_row_names(text, first_row, layout, line.fields);
-  std::vector<std::string_view> own_fields = line.fields;
-  line.fits = line.own || split_otherwise(text, layout, line.fields);
+  const Split split = split_names(text, first_row, layout, line.fields);
+  line.own = split != Split::other;
   line.roles = named_roles(line.fields);
   // Names beyond the columns are those of remarks, but not of a role.
-  const auto beyond = [&](std::size_t column) { return column > std::max(layout.columns, widest); };
-  line.fits = line.fits && std::ranges::none_of(line.roles.column, beyond);
-  if (!line.fits) {
-    line.own = true;
-    line.fields = std::move(own_fields);
-    line.roles = named_roles(line.fields);
-  }
+  const auto beyond = [&](std::size_t column) { return column > layout.widest; };
+  line.fits = split != Split::none && std::ranges::none_of(line.roles.column, beyond);
   line.units = count_units(line.fields);
   return line;
 }
 
+// Text files of LabVIEW have the units of the columns above the table and, if the table has no times, the interval and
+// the first time of each channel.
+void read_labview_head(const std::vector<std::string_view>& lines, std::size_t first, TableLayout& layout) {
+  Fields fields;
+  bool times = true;
+  const auto numbers = [&] {
+    std::vector<double> values(fields.size(), 0.0);
+    for (std::size_t i = 1; i < fields.size(); ++i) parse_table_number(fields[i], layout.decimal, values[i]);
+    return values;
+  };
+  for (std::size_t i = 0; i < first; ++i) {
+    const std::string_view line = lines[i];
+    if (line.empty() || (line.front() != 'Y' && line.front() != 'X' && line.front() != 'D')) continue;
+    if (split_table_fields(line, layout.delimiter, fields) < 2 || fields.size() < 2) continue;
+    if (fields[0] == "Y_Unit_Label") {
+      layout.units = fields;
+      layout.units[0] = {};
+    }
+    if (fields[0] == "X_Columns") times = fields[1] != "No";
+    if (fields[0] == "Delta_X") layout.steps_s = numbers();
+    if (fields[0] == "X0") layout.starts_s = numbers();
+  }
+  if (times) layout.steps_s.clear();
+}
+
 }  // namespace
 
-void find_table_header(const std::vector<std::string_view>& lines, std::size_t first, std::size_t widest,
-                       TableLayout& layout) {
+void find_table_header(const std::vector<std::string_view>& lines, std::size_t first, TableLayout& layout) {
   std::vector<Line> candidates;  // the nearest first
   std::optional<Line> units;
   std::size_t seen = 0;
+  Fields row;
   for (std::size_t i = first; i-- > 0 && seen < kReach;) {
-    if (trimmed(lines[i]).empty()) continue;
+    // A second block may share the header of the first.
+    if (trimmed(lines[i]).empty() || is_row(layout, lines[i], row)) continue;
     ++seen;
-    Line line = read_line(lines[i], lines[first], widest, layout);
+    Line line = read_line(lines[i], lines[first], layout);
     line.number = i + 1;
     if (line.is_units()) {
       if (!units) units = std::move(line);
@@ -188,23 +198,25 @@ void find_table_header(const std::vector<std::string_view>& lines, std::size_t f
   for (const Line& line : candidates)
     if (header == nullptr || line.better_than(*header)) header = &line;
   if (header == nullptr) header = units ? &*units : nullptr;  // the units are the only names
-  if (header == nullptr) return;
-  if (units && units->number < header->number) units.reset();
-  for (const Line& line : candidates) {
-    if (&line == header) break;
-    if (!units && header->is_named() && line.has_units()) units = line;
+  if (header != nullptr) {
+    if (units && units->number < header->number) units.reset();
+    for (const Line& line : candidates) {
+      if (&line == header) break;
+      if (!units && header->is_named() && line.has_units()) units = line;
+    }
+    layout.header = header->number;
+    layout.names = header->fields;
+    layout.misfit = !header->fits;
+    if (layout.misfit) return;
+    layout.columns = std::clamp(layout.names.size(), layout.columns, layout.widest);
+    layout.names.resize(layout.columns);
+    if (units) layout.units = units->fields;
+    for (const Line& line : candidates) {
+      const bool weaker = header->roles.strength - line.roles.strength > kClearStrength;
+      if (line.is_named() && !weaker && header->roles.contradicts(line.roles)) layout.rival = line.number;
+    }
   }
-  layout.header_line = header->number;
-  layout.names = header->fields;
-  layout.misfit = !header->fits;
-  if (layout.misfit) return;
-  layout.columns = std::clamp(layout.names.size(), layout.columns, std::max(layout.columns, widest));
-  layout.names.resize(layout.columns);
-  if (units) layout.units = units->fields;
-  for (const Line& line : candidates) {
-    const bool weaker = header->roles.strength - line.roles.strength > kClearStrength;
-    if (line.is_named() && !weaker && header->roles.contradicts(line.roles)) layout.rival_line = line.number;
-  }
+  read_labview_head(lines, first, layout);
 }
 
 }  // namespace palpate

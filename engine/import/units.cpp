@@ -1,9 +1,8 @@
-#include "engine/import/units.h"
-
 #include <array>
 #include <vector>
 
 #include "engine/base/text.h"
+#include "engine/import/table_parts.h"
 
 namespace palpate {
 namespace {
@@ -18,11 +17,14 @@ struct SpelledUnit {
 
 // The micro sign is U+00B5 or, in some fonts' files, the Greek U+03BC.
 constexpr std::array kUnits = {
-    SpelledUnit{{"s", Quantity::time, 1.0}, "s sec secs second seconds Sek Sekunden"},
-    SpelledUnit{{"ms", Quantity::time, 1e-3}, "ms msec millis millisecond milliseconds"},
-    SpelledUnit{{"us", Quantity::time, 1e-6}, "us \xC2\xB5s \xCE\xBCs usec micros microseconds"},
-    SpelledUnit{{"ns", Quantity::time, 1e-9}, "ns nsec nanoseconds"},
-    SpelledUnit{{"min", Quantity::time, 60.0}, "min minutes"},
+    SpelledUnit{{"s", Quantity::time, 1.0}, "s sec secs second seconds Sek Sekunden secondes"},
+    SpelledUnit{{"ms", Quantity::time, 1e-3}, "ms msec msecs millis millisecond milliseconds"},
+    SpelledUnit{{"us", Quantity::time, 1e-6}, "us \xC2\xB5s \xCE\xBCs usec usecs micros microsecond microseconds"},
+    SpelledUnit{{"ns", Quantity::time, 1e-9}, "ns nsec nsecs nanos nanosec nanosecond nanoseconds"},
+    SpelledUnit{{"ticks", Quantity::time, 1e-7}, "ticks"},
+    SpelledUnit{{"min", Quantity::time, 60.0}, "min minute minutes"},
+    SpelledUnit{{"h", Quantity::time, 3600.0}, "h hr hrs hour hours"},
+    SpelledUnit{{"days", Quantity::time, 86400.0}, "day days"},
     SpelledUnit{{"m", Quantity::length, 1.0}, "m meter meters metre metres"},
     SpelledUnit{{"cm", Quantity::length, 1e-2}, "cm"},
     SpelledUnit{{"mm", Quantity::length, 1e-3}, "mm millimeter millimeters"},
@@ -155,7 +157,9 @@ NameAndUnit split_name_and_unit(std::string_view header) {
     const std::string_view last = header.substr(mark + 1);
     if (is_prefixed_unit(last)) return {std::string(trimmed(header.substr(0, mark))), std::nullopt, std::string(last)};
   }
-  return {std::string(header), std::nullopt, ""};
+  // "millis" alone is a name and a unit.
+  const auto whole = header.size() > 1 ? find_unit(header) : std::nullopt;
+  return {std::string(header), whole && whole->quantity == Quantity::time ? whole : std::nullopt, ""};
 }
 
 }  // namespace palpate

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <filesystem>
 #include <optional>
 #include <utility>
 
@@ -153,6 +154,17 @@ Result<CheckedFile> check_recording_file(const std::string& path, const CheckReq
   const bool whole = faults.rows < kMostCheckedRows;
   PreparedRecordingPointer prepared = prepare_recording(std::move(*recording));
   CheckedFile file{path, prepared, whole, check_recording(*prepared, request, faults)};
+  // Advice names this file, and a new one beside it, so that its commands can be copied.
+  const std::filesystem::path given(path);
+  const std::string corrected = (given.parent_path() / (given.stem().string() + "_zeroed.csv")).string();
+  for (Finding& finding : file.check.findings) {
+    for (const auto& [word, name] : {std::pair<std::string_view, const std::string&>{" FILE ", path},
+                                     {" REC.csv", corrected}}) {
+      const std::size_t at = finding.advice.find(word);
+      if (at == std::string::npos) continue;
+      finding.advice.replace(at, word.size(), " " + shell_word(name) + (word.back() == ' ' ? " " : ""));
+    }
+  }
   if (!whole) {
     add_finding(file, {"truncated", Severity::warning, static_cast<double>(kMostCheckedRows),
                        "only the first " + std::to_string(kMostCheckedRows) + " rows are used",

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 #include <tuple>
 
 #include "engine/tick/sensor_identification.h"
@@ -18,7 +19,12 @@
 namespace palpate {
 namespace {
 
-constexpr double kMostLag_s = 0.05;
+constexpr double kNearLag_s = 0.05;  // searched in fine steps, and by every row
+// The steps of the search for a longer lag, on every fourth row: a fifth of a quick stroke.
+constexpr double kFarStep_s = 0.04;
+constexpr std::size_t kFarStride = 4;
+// A longer lag is searched for where it lowers the cost to this share.
+constexpr double kFarGain = 0.7;
 constexpr double kCoarse_s = 0.005;  // between lags, and at least between rows
 constexpr double kFine_s = 0.2e-3;
 // The required accuracy: a lag with two standard errors above it is not identified; lags that differ by at most this
@@ -161,6 +167,27 @@ int strokes_of(const std::vector<Sample>& rows, double middle_m) {
   return strokes;
 }
 
+// The lag beyond the near range with the lowest cost, in coarse steps; 0 if none is clearly better than all near ones.
+double far_lag_s(const std::vector<Sample>& rows, double noise_N) {
+  std::vector<Sample> some;
+  for (std::size_t i = 0; i < rows.size(); i += kFarStride) some.push_back(rows[i]);
+  const LagRegression regression(some, noise_N);
+  const auto cost = [&](double lag_s) {
+    const BlockCosts costs = regression.costs(lag_s);
+    return std::accumulate(costs.begin(), costs.end(), 0.0);
+  };
+  double near = HUGE_VAL;
+  for (const double lag_s : {-kFarStep_s, 0.0, kFarStep_s}) near = std::min(near, cost(lag_s));
+  double best = kFarGain * near, best_s = 0.0;
+  for (int step = 2; step * kFarStep_s < kMostLag_s + 0.5 * kFarStep_s; ++step) {
+    for (const double lag_s : {step * kFarStep_s, -step * kFarStep_s}) {
+      const double here = cost(lag_s);
+      if (here < best) best = here, best_s = lag_s;
+    }
+  }
+  return best_s;
+}
+
 }  // namespace
 
 OffsetEstimate find_force_lag(const std::vector<Sample>& rows, double force_noise_N) {
@@ -175,8 +202,16 @@ OffsetEstimate find_force_lag(const std::vector<Sample>& rows, double force_nois
   const auto [low_m, high_m] = position_range_m(some);
   if (!(high_m > low_m) || strokes_of(some, 0.5 * (low_m + high_m)) < kLeastStrokes) return {};
   const LagRegression regression(some, force_noise_N);
-  return estimate_offset([&](double lag_s) { return regression.costs(lag_s); },
-                         {-kMostLag_s, kMostLag_s, kCoarse_s, kFine_s, kAccuracy_s, kAccuracy_s});
+  double low_s = -kNearLag_s, high_s = kNearLag_s;
+  const double far_s = far_lag_s(some, force_noise_N);
+  if (std::abs(far_s) > kMostLag_s - kFarStep_s) return {far_s, true, kUnknownError, true, far_s};
+  (far_s < 0.0 ? low_s : high_s) += far_s < 0.0 ? std::min(0.0, far_s) : far_s;
+  OffsetEstimate lag = estimate_offset([&](double lag_s) { return regression.costs(lag_s); },
+                                       {low_s, high_s, kCoarse_s, kFine_s, kAccuracy_s, kAccuracy_s});
+  // A force that is read once a row is late by anything up to the interval of the rows, evenly distributed.
+  lag.standard_error = std::hypot(lag.standard_error, step_s / std::sqrt(12.0));
+  if (std::abs(lag.at) < kSignificantErrors * lag.standard_error) lag.at = 0.0;
+  return lag;
 }
 
 }  // namespace palpate

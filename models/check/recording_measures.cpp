@@ -1,5 +1,6 @@
 #include "models/check/recording_measures.h"
 
+#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -152,13 +153,71 @@ RecordingMeasures measure_recording(const Recording& recording, double surface_m
   return measures;
 }
 
+double white_force_noise_N(const PreparedRecording& prepared) {
+  constexpr double kQuietShare = 0.87;
+  return prepared.force_noise_N / kQuietShare;
+}
+
+ZeroDrift find_zero_drift(const PreparedRecording& prepared) {
+  constexpr std::size_t kGroups = 24, kLeastRows = 10;
+  const FreeAir& air = prepared.surface.air;
+  std::vector<RecordingRow> rows;
+  for (const RecordingRow& row : prepared.recording.rows)
+    if (air.found && row.position_m < air.inner_end_m) rows.push_back(row);
+  const std::size_t count = std::min(kGroups, rows.size() / kLeastRows);
+  if (count < 3) return {};
+  ZeroDrift drift;
+  std::vector<double> times_s, medians_N, scatter_N;
+  for (std::size_t k = 0; k < count; ++k) {
+    const std::size_t begin = k * rows.size() / count, end = (k + 1) * rows.size() / count;
+    std::vector<double> forces_N, deviations_N;
+    for (std::size_t i = begin; i < end; ++i) forces_N.push_back(rows[i].force_N);
+    const double middle_N = median_of(forces_N);
+    for (const double force_N : forces_N) deviations_N.push_back(std::abs(force_N - middle_N));
+    times_s.push_back(rows[(begin + end) / 2].time_s);
+    medians_N.push_back(middle_N);
+    // The standard deviation of normal errors is 1.4826 times the median of their sizes, and the standard error of a
+    // median 1.2533 times that of a mean.
+    scatter_N.push_back(1.2533 * 1.4826 * median_of(deviations_N) / std::sqrt(static_cast<double>(end - begin)));
+  }
+  drift.standard_error_N = median_of(scatter_N);
+  const auto [lowest_N, highest_N] = std::ranges::minmax(medians_N);
+  drift.range_N = highest_N - lowest_N;
+  const double duration_s = std::max(times_s.back() - times_s.front(), 1e-9);
+  // The least squares of a line, and of a line with a step before group `at`.
+  double line_only = HUGE_VAL, best = HUGE_VAL;
+  for (std::size_t at = 0; at < count; ++at) {
+    Eigen::MatrixXd design = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(count), at > 0 ? 3 : 2);
+    Eigen::VectorXd force_N(static_cast<Eigen::Index>(count));
+    for (std::size_t k = 0; k < count; ++k) {
+      const auto row = static_cast<Eigen::Index>(k);
+      design(row, 0) = 1.0;
+      design(row, 1) = (times_s[k] - times_s.front()) / duration_s;
+      if (at > 0 && k >= at) design(row, 2) = 1.0;
+      force_N(row) = medians_N[k];
+    }
+    const Eigen::VectorXd fitted = design.colPivHouseholderQr().solve(force_N);
+    const double error = (design * fitted - force_N).squaredNorm();
+    if (at == 0) {
+      line_only = error;
+      drift.line_N = fitted(1);
+    } else if (error < best && error < 0.25 * line_only) {
+      best = error;
+      drift.line_N = fitted(1);
+      drift.step_N = fitted(2);
+      drift.step_at_s = times_s[at];
+    }
+  }
+  return drift;
+}
+
 NoiseFloor noise_floor(const std::vector<const PreparedRecording*>& recordings, const JndLine& jnd) {
   std::vector<double> noise_over_jnd;
   double squares_N2 = 0.0;
   for (const PreparedRecording* prepared : recordings) {
     const std::vector<RecordingRow>& rows = prepared->recording.rows;
     const SurfaceEstimate& surface = prepared->surface;
-    const double noise_N = prepared->force_noise_N;
+    const double noise_N = white_force_noise_N(*prepared);
     for (std::size_t i = 0; i < rows.size(); i += rows.size() / kMostSamples + 1) {
       if (!(rows[i].position_m > surface.offset_m)) continue;
       noise_over_jnd.push_back(noise_N / jnd.at(rows[i].force_N - surface.force_zero_N));

@@ -50,6 +50,16 @@ double change_beside(const std::vector<Run>& runs, std::size_t at) {
   return std::max(change(at - 1, at + 1), std::min(change(at - 2, at - 1), change(at + 1, at + 2)));
 }
 
+// The scatter of a column around a row: the upper quartile of the distances of rows from the mean of their neighbours. A
+// sensor may be noisier at a high force than in air.
+double scatter_beside(const Rows& rows, Column column, std::size_t at) {
+  constexpr std::size_t kReach = 32;
+  std::vector<double> distances;
+  for (std::size_t i = std::max(at, kReach + 1) - kReach; i + 1 < std::min(rows.size(), at + kReach); ++i)
+    distances.push_back(std::abs(rows[i].*column - 0.5 * (rows[i - 1].*column + rows[i + 1].*column)));
+  return quantile_of(std::move(distances), 0.75);
+}
+
 std::vector<Run> dropouts(const Rows& rows, Column column, double noise, bool is_position) {
   const std::vector<Run> runs = runs_of(rows, column);
   if (runs.size() < 5) return {};
@@ -66,6 +76,8 @@ std::vector<Run> dropouts(const Rows& rows, Column column, double noise, bool is
     const double size = excursions[i - 1];
     // The tip of a triangle wave exceeds the change beside it once.
     if (run.end - run.begin > 3 || !(size > least) || !(size > 3.0 * change_beside(runs, i))) continue;
+    // Of white noise the quartile is 1.4 standard deviations.
+    if (!(size > 8.0 * scatter_beside(rows, column, run.begin))) continue;
     const double half_s = 0.5 * (rows[run.end].time_s - rows[run.begin - 1].time_s);
     // A hand reaches some 50 m/s^2, a testing machine less.
     const bool impossible = is_position ? 2.0 * size > 100.0 * half_s * half_s : half_s < 0.01;

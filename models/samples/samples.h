@@ -23,6 +23,7 @@
 #include <cmath>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -98,6 +99,11 @@ struct PreparedRecording {
 };
 
 using PreparedRecordingPointer = std::shared_ptr<const PreparedRecording>;
+
+// The force of free air, the zero of the force of this recording, N; none without free air.
+inline std::optional<double> free_air_force_N(const PreparedRecording& prepared) {
+  return prepared.surface.air.found ? std::optional(prepared.surface.air.zero_N) : std::nullopt;
+}
 
 // `recording`: at least one row.
 PreparedRecordingPointer prepare_recording(Recording recording);

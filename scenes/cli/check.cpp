@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/base/text.h"
 #include "scenes/cli/verbs.h"
 
 namespace palpate::cli {
@@ -20,7 +21,15 @@ Status run_check(const CheckOptions& options) {
   const auto files = check_recording_files(options.recordings, check_request(*scene));
   if (!files) return files.error();
   print_check(*files, options.json);
-  return refuse_unusable(*files);
+  // The findings are printed already.
+  for (const CheckedFile& file : *files) {
+    if (refuse_unusable({file})) continue;
+    std::vector<std::string> codes;
+    for (const Finding& finding : file.check.findings)
+      if (finding.severity == Severity::fatal) codes.push_back(finding.code);
+    return Error{file.path + ": not usable for a fit: " + joined(codes) + "; follow the advice above"};
+  }
+  return {};
 }
 
 }  // namespace
@@ -30,7 +39,8 @@ void add_check(CLI::App& app, Verbs& verbs) {
   CLI::App* verb = app.add_subcommand("check", "Check whether recordings are suitable for a fit");
   verb->add_option("recording", options->recordings, "Recordings to check (CSV)")->required()->type_name("REC.csv");
   verb->add_option("--scene", options->scene, "Scene that gives the JND line, and whether the force has a memory")
-      ->capture_default_str();
+      ->capture_default_str()
+      ->check(scene_name());
   verb->add_flag("--json", options->json, "Print one JSON object");
   verbs.emplace_back(verb, [options] { return run_check(*options); });
 }

@@ -146,7 +146,7 @@ void print_fit(const PreparedTraining& prepared, const MethodFit& fit, double se
   print_line("training <= JND", fixed(100.0 * provenance.training_within_jnd, 2) + " %" +
                                     (accelerometer ? " (with the accelerometer)" : " (from positions alone)"));
   print_line("written", out);
-  print_line("next", "palpate replay --recording TEST.csv --model " + shell_word(out));
+  print_line("next", with_program_name("palpate replay --recording TEST.csv --model ") + shell_word(out));
 }
 
 Status run_fit(const FitArguments& arguments) {
@@ -231,7 +231,8 @@ void add_fit(CLI::App& app, Verbs& verbs) {
   for (const PlanOption& option : plan_options()) add_plan_option(*verb, option, arguments);
   verb->add_flag_callback("--list-methods", list_methods, "Print the names of all methods, one per line");
   verb->option_defaults()->always_capture_default();
-  verb->add_option("--scene", arguments->scene, "Scene that gives the features and the JND line");
+  verb->add_option("--scene", arguments->scene, "Scene that gives the features and the JND line")
+      ->check(scene_name());
   verb->add_option("--out", arguments->out, "Model file (JSON) or folder to write")
       ->required()
       ->type_name("JSON|FOLDER");

@@ -1,4 +1,5 @@
 // palpate import: converts a table of another program to a recording.
+#include <charconv>
 #include <iostream>
 #include <memory>
 #include <optional>
@@ -19,7 +20,7 @@ struct ImportOptions {
   std::vector<std::string> columns, units, flips;
   std::string decimal;
   ImportRequest request;  // its rate, gain and number of bad rows
-  std::string origin;
+  std::string origin, tare, rows;
   bool json = false, force = false;
 };
 
@@ -50,6 +51,17 @@ void read_unit(const std::string& text, std::vector<Unit>& units) {
   units.push_back(*unit);
 }
 
+// "12-340"
+std::optional<LineRange> line_range(const std::string& text) {
+  LineRange range;
+  const char* const end = text.data() + text.size();
+  const auto first = std::from_chars(text.data(), end, range.first);
+  if (first.ec != std::errc() || first.ptr == end || *first.ptr != '-') return std::nullopt;
+  const auto last = std::from_chars(first.ptr + 1, end, range.last);
+  const bool whole = last.ec == std::errc() && last.ptr == end;
+  return whole && range.first > 0 && range.first <= range.last ? std::optional(range) : std::nullopt;
+}
+
 ImportRequest import_request(const ImportOptions& options) {
   ImportRequest request = options.request;
   for (const std::string& column : options.columns) read_column(column, request.columns);
@@ -59,6 +71,8 @@ ImportRequest import_request(const ImportOptions& options) {
     request.flip_force = request.flip_force || flip != "position";
   }
   if (!options.decimal.empty()) request.decimal = options.decimal == "comma" ? ',' : '.';
+  if (!options.rows.empty()) request.rows = line_range(options.rows);
+  request.command = command_line();
   return request;
 }
 
@@ -68,10 +82,23 @@ std::optional<double> finite_number(const std::string& text) {
   return parse_number(text.data(), end, value) == end ? std::optional(value) : std::nullopt;
 }
 
-// Applies --zero: "contact", "first" or a position in metres.
-Status move_origin(const std::string& origin, Recording& recording) {
+// Applies --tare and then --zero: "auto", "contact", "first" or a value. Adds a note for each.
+Status move_zeros(const ImportOptions& options, ImportedTable& table) {
+  Recording& recording = table.recording;
+  if (!options.tare.empty()) {
+    double zero_N = finite_number(options.tare).value_or(0.0);
+    if (options.tare == "auto") {
+      const auto air_N = free_air_force_N(*prepare_recording(recording));
+      if (!air_N)
+        return Error{"the force of free air cannot be identified, because there is no free air; give --tare VALUE_N"};
+      zero_N = *air_N;
+    }
+    for (RecordingRow& row : recording.rows) row.force_N -= zero_N;
+    table.notes.push_back("force 0 was at " + fixed(zero_N, 4) + " N in the table");
+  }
+  if (options.origin.empty()) return {};
   double at_m = recording.rows.front().position_m;
-  if (origin == "contact") {
+  if (options.origin == "contact") {
     const SurfaceEstimate surface = prepare_recording(recording)->surface;
     if (!surface.identified()) {
       return Error{std::string("the position where the force begins cannot be identified") +
@@ -79,17 +106,26 @@ Status move_origin(const std::string& origin, Recording& recording) {
                    "; give --zero first or a position in metres"};
     }
     at_m = surface.raw_offset_m;
-  } else if (origin != "first") {
-    at_m = finite_number(origin).value_or(0.0);  // checked by check_origin
+  } else if (options.origin != "first") {
+    at_m = finite_number(options.origin).value_or(0.0);  // checked by check_zero
   }
   for (RecordingRow& row : recording.rows) row.position_m -= at_m;
+  table.notes.push_back("position 0 was at " + fixed(1e3 * at_m, 4) + " mm in the table");
   return {};
 }
 
-std::string check_origin(const std::string& origin) {
+std::string check_zero(const std::string& origin) {
   return origin == "contact" || origin == "first" || finite_number(origin)
              ? ""
              : "found \"" + origin + "\", expected contact, first or metres";
+}
+
+std::string check_tare(const std::string& tare) {
+  return tare == "auto" || finite_number(tare) ? "" : "found \"" + tare + "\", expected auto or newtons";
+}
+
+std::string check_rows(const std::string& text) {
+  return line_range(text) ? "" : "found \"" + text + "\", expected two lines of the file, as in 12-340";
 }
 
 std::string check_gain(const std::string& gain) {
@@ -103,7 +139,8 @@ double seconds_of(const ImportedTable& table) {
 }
 
 void print_text(const ImportOptions& options, const ImportRequest& request, const ImportedTable& table) {
-  std::cout << "table      " << table.layout.words(table.encoding) << "\n";
+  std::cout << "table      " << layout_words(table) << "\n";
+  for (const std::string& rows : row_words(table)) std::cout << "rows       " << rows << "\n";
   for (std::size_t role = 0; role < kRoles; ++role) {
     const std::string name = kRoleNames[role];
     std::cout << name << std::string(11 - name.size(), ' ') << column_words(table.columns[role]) << "\n";
@@ -111,13 +148,20 @@ void print_text(const ImportOptions& options, const ImportRequest& request, cons
   for (const std::string& flip : flipped_roles(request)) std::cout << "flipped    " << flip << "\n";
   for (const std::string& note : table.notes) std::cout << "note       " << note << "\n";
   std::cout << "written    " << printable(options.out, std::string::npos) << ": " << table.recording.rows.size()
-            << " rows, " << seconds_of(table) << " s\nnext       palpate check " << shell_word(options.out) << "\n";
+            << " rows, " << seconds_of(table) << " s\nnext       " << with_program_name("palpate check ")
+            << shell_word(options.out) << "\n";
 }
 
 void print_import_json(const ImportOptions& options, const ImportRequest& request, const ImportedTable& table) {
   using Json = nlohmann::ordered_json;
   const double seconds = seconds_of(table);
   const double rate_Hz = request.rate_Hz.value_or(static_cast<double>(table.recording.rows.size() - 1) / seconds);
+  Json left_out = Json::array();
+  for (const LeftOut& one : table.left_out)
+    left_out.push_back({{"reason", one.reason},
+                        {"rows", one.rows},
+                        {"first_line", one.lines.first},
+                        {"last_line", one.lines.last}});
   Json columns = Json::object();
   for (std::size_t role = 0; role < kRoles; ++role) {
     const ImportedColumn& column = table.columns[role];
@@ -131,13 +175,15 @@ void print_import_json(const ImportOptions& options, const ImportRequest& reques
   print_json({{"file", options.file},
               {"out", options.out},
               {"rows", table.recording.rows.size()},
+              {"first_line", table.lines.first},
+              {"last_line", table.lines.last},
+              {"left_out", left_out},
               {"seconds", seconds},
               {"rate_Hz", static_cast<double>(table.recording.rows.size() - 1) / seconds},
               {"encoding", table.encoding},
-              {"delimiter", table.layout.delimiter.name},
-              {"decimal", table.layout.decimal_name()},
-              {"header_line", table.layout.header_line},
-              {"data_line", table.layout.data_line},
+              {"delimiter", table.delimiter},
+              {"decimal", table.decimal},
+              {"header_line", table.header_line},
               {"columns", columns},
               {"flips", flipped_roles(request)},
               {"notes", table.notes}});
@@ -150,13 +196,9 @@ Status run_import(const ImportOptions& options) {
   if (const auto trial = AtomicFile::create(options.out, options.force); !trial) return trial.error();
   auto table = import_table(options.file, request);
   if (!table) return table.error();
-  if (!options.origin.empty()) {
-    const double before_m = table->recording.rows.front().position_m;
-    if (Status status = move_origin(options.origin, table->recording); !status)
-      return Error{options.file + ": " + status.error().message};
-    table->notes.push_back("position 0 was at " +
-                           fixed(1e3 * (before_m - table->recording.rows.front().position_m), 4) + " mm in the table");
-  }
+  if (const Status moved = move_zeros(options, *table); !moved)
+    return Error{options.file + ": " + moved.error().message};
+  if (const Status fits = check_limits(options.file, request, *table); !fits) return fits;
   const Status written =
       write_recording(options.out, table->recording, import_origin(options.file, request, *table), options.force);
   if (!written) return written;
@@ -192,18 +234,29 @@ void add_import(CLI::App& app, Verbs& verbs) {
   verb->add_option("--zero,--origin", options->origin,
                    "Position that becomes 0: contact (where the force begins), first (the first row), or a value in m "
                    "[unchanged]")
-      ->check(CLI::Validator(check_origin, "contact|first|M"));
+      ->check(CLI::Validator(check_zero, "contact|first|M"));
+  verb->add_option("--tare", options->tare,
+                   "Force that becomes 0: auto (the force of free air), or a value in N [unchanged]")
+      ->check(CLI::Validator(check_tare, "auto|N"));
+  verb->add_option("--rows", options->rows, "Lines of the file, from 1, that hold the rows [all]")
+      ->check(CLI::Validator(check_rows, ""))
+      ->type_name("FROM-TO");
+  verb->add_option("--block", options->request.block, "Block of rows to read, from 1, where there are several")
+      ->check(number_from(1.0, 1e9))
+      ->type_name("N");
   verb->add_option("--gain", options->request.gain_N_per_V, "Newtons per volt, for a force recorded in volts")
       ->check(CLI::Validator(check_gain, ""))
       ->type_name("N_PER_V");
   verb->add_option("--skip-bad-rows", options->request.skip_bad_rows,
-                   "Largest number of unreadable rows to leave out [0]")
+                   "Largest number of unreadable rows to leave out; the others keep their times [0]")
       ->check(number_from(0.0, 1e9))
       ->type_name("N");
   verb->add_option("--decimal", options->decimal, "Decimal mark: point or comma [guessed]")
       ->check(CLI::IsMember({"point", "comma"}));
   verb->add_flag("--json", options->json, "Print one JSON object");
   verb->add_flag("--force", options->force, "Replace an existing file");
+  for (CLI::Option* option : verb->get_options())
+    if (option->get_items_expected_max() == 1) option->take_last();  // a ready command may repeat an option
   verbs.emplace_back(verb, [options] { return run_import(*options); });
 }
 

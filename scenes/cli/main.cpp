@@ -32,7 +32,7 @@ struct Verb {
 };
 // In the order of the work, which is that of --help.
 constexpr Verb kVerbs[] = {
-    {add_import, "palpate import rig.csv --units mm,N --zero contact --out rec.csv"},
+    {add_import, "palpate import rig.csv --units mm,N --tare auto --zero contact --out rec.csv"},
     {add_check, "palpate check rec.csv"},
     {add_fit, "palpate fit --recording rec.csv --out model.json"},
     {add_replay, "palpate replay --recording test.csv --model model.json --plot errors.svg"},
@@ -48,7 +48,7 @@ constexpr Verb kVerbs[] = {
 };
 
 int fail(const std::string& message, int exit_code) {
-  const std::string block = "error: " + printable(message, std::string::npos) + "\n";
+  const std::string block = "error: " + printable(with_program_name(message), std::string::npos) + "\n";
   std::fflush(stdout);
   std::fwrite(block.data(), 1, block.size(), stderr);
   return exit_code;
@@ -64,7 +64,11 @@ int fail_usage(const CLI::App& app, const Verbs& verbs, std::string message) {
     for (const auto& [command, run] : verbs) names.push_back(command->get_name());
     return fail(message + "; known verbs: " + joined(names) + " (palpate --help explains)", kUsage);
   }
-  return fail(message + " (palpate " + chosen.front()->get_name() + " --help explains)", kUsage);
+  // The page of the innermost verb has the option.
+  std::string page = chosen.front()->get_name();
+  for (auto inner = chosen.front()->get_subcommands(); !inner.empty(); inner = inner.front()->get_subcommands())
+    page += " " + inner.front()->get_name();
+  return fail(message + " (palpate " + page + " --help explains)", kUsage);
 }
 
 Status run_chosen(const Verbs& verbs) {
@@ -97,6 +101,10 @@ std::string unknown_word(const CLI::App& app, const std::vector<std::string>& wo
       }
       if (std::ranges::find(known, name) == known.end())
         return unknown("option --" + printable(name), name, "--", known);
+      const CLI::Option* option = verb->get_option("--" + name);
+      const bool last = &word == &words.back() || (&word)[1].starts_with("--");
+      if (option->get_items_expected_min() > 0 && word.find('=') == std::string::npos && last)
+        return "--" + name + ": found no value, expected one";
       continue;
     }
     const auto subs = verb->get_subcommands([](const CLI::App*) { return true; });
@@ -133,7 +141,8 @@ std::vector<std::string> words_of(int argc, char** argv) {
   return words;
 }
 
-int run_program(const std::vector<std::string>& words) {
+// `program`: as it was called.
+int run_program(const std::string& program, const std::vector<std::string>& words) {
   CLI::App app("Palpate: data-driven haptic rendering, without a window", "palpate");
   app.set_version_flag("--version", version_text);
   Verbs verbs;
@@ -141,6 +150,7 @@ int run_program(const std::vector<std::string>& words) {
     one.add(app, verbs);
     verbs.back().first->footer(std::string("Example:\n  ") + one.example);
   }
+  set_command_line(app, program, words);
   app.footer("Example, from a table to a model and its errors on another recording:\n  " + joined_examples());
   try {
     if (words.empty()) return fail_usage(app, verbs, "no verb given");
@@ -180,7 +190,7 @@ int main(int argc, char** argv) {
     palpate::install_signal_handlers();
     palpate::prepare_blas();
     palpate::cli::keep_freed_memory();
-    return palpate::cli::run_program(palpate::cli::words_of(argc, argv));
+    return palpate::cli::run_program(argc > 0 ? argv[0] : "palpate", palpate::cli::words_of(argc, argv));
   } catch (const std::bad_alloc&) {
     return palpate::cli::fail("out of memory", palpate::cli::kFailed);
   } catch (const std::exception& error) {

@@ -141,6 +141,8 @@ Status run_record(const RecordOptions& options) {
   if (!scene) return scene.error();
   if (options.bridge_remote) allow_remote_bridges();
   auto device = open_device(options.device, {.calibrations = calibrations_folder()});
+  if (!device && device.error().message.starts_with("unknown device"))
+    throw CLI::ValidationError("--device", device.error().message);
   if (!device) return device.error();
   if (options.guide && !(*device)->measures_force()) {
     return Error{"--guide: " + options.device +
@@ -203,7 +205,8 @@ void add_record(CLI::App& app, Verbs& verbs) {
       ->check(number_from(0.1, 1e6));
   verb->add_flag("--guide", options->guide, "Say what to press next, and show which depths and speeds are missing");
   verb->add_option("--scene", options->scene, "Scene that gives the JND line, and whether the force has a memory")
-      ->capture_default_str();
+      ->capture_default_str()
+      ->check(scene_name());
   verb->add_flag("--bridge-remote", options->bridge_remote, "Allow bridge:tcp: to name another computer");
   verb->add_flag("--json", options->json, "Print one JSON object, that of palpate check");
   verb->add_flag("--force", options->force, "Replace an existing file");

@@ -315,10 +315,10 @@ Result<ReplayedRecording> replay_one(const CheckedFile& checked, const Recording
     if (!plot_path.empty())
       moments.push_back({row.time_s, row.force_N, snapshot.in_contact, {begin, begin + snapshot.model_count}});
   };
-  Result<Recording> whole = Recording{};  // of a recording that was checked in part
-  if (!checked.whole) whole = read_recording(checked.path);
+  // A test keeps every row, also those that a fit would leave out.
+  const Result<Recording> whole = read_recording(checked.path);
   if (!whole) return whole.error();
-  const auto evaluation = evaluate(checked.whole ? checked.recording() : *whole, evaluated, request);
+  const auto evaluation = evaluate(*whole, evaluated, request);
   if (!evaluation) return evaluation.error();
   if (forces) {
     if (const Status status = forces->commit(); !status) return status.error();
@@ -405,7 +405,14 @@ void add_replay(CLI::App& app, Verbs& verbs) {
                       "Names of the models in the results, one for each --model in the same order [as in the files]");
   command->add_option("--plot", options->plot,
                       "Figure to draw (.svg or .png): force, errors in JND, and errors over force; for several "
-                      "recordings PLOT_RECORDING");
+                      "recordings PLOT_RECORDING")
+      ->check(CLI::Validator(
+          [](const std::string& path) {
+            return path.ends_with(".svg") || path.ends_with(".png")
+                       ? std::string()
+                       : "found " + path + ", expected a file that ends in .svg or .png";
+          },
+          ""));
   command->add_option("--out", options->out,
                       "File to write (CSV): features and forces of every row; for several recordings OUT_RECORDING");
   command->add_flag("--all", options->all, "Print all figures, also with the surface aligned to this recording");

@@ -178,7 +178,7 @@ void add_simulate_options(CLI::App* verb, StudyOptions& options) {
     verb->add_option(name, value, help)->check(number_from(low, high))->capture_default_str();
   };
   verb->add_option("--subjects", options.subjects, "Number of subjects")
-      ->check(CLI::Range(1, 99))
+      ->check(number_from(1.0, 99.0))
       ->capture_default_str();
   add_stroke_options(verb, options);
   verb->add_option("--seed", options.seed, "Seed of the subjects")

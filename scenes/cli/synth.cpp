@@ -59,8 +59,11 @@ void add_synth(CLI::App& app, Verbs& verbs) {
   verb->add_option("--seed", options->rig.seed, "Seed of the hand motion and the sensor noise")
       ->check(CLI::Validator([](const std::string& text) { return option_error("seed", text); }, ""))
       ->capture_default_str();
-  verb->add_option("--seconds", options->rig.seconds, "Length in s [depends on the material]");
-  verb->add_option("--rate", options->rig.rate_Hz, "Rows per second (Hz), 10 to 20000")->capture_default_str();
+  verb->add_option("--seconds", options->rig.seconds, "Length in s [depends on the material]")
+      ->check(number_from(0.1, 1e6));
+  verb->add_option("--rate", options->rig.rate_Hz, "Rows per second (Hz), 10 to 20000")
+      ->check(number_from(10.0, 20000.0))
+      ->capture_default_str();
   verb->add_option("--out", options->out, "Recording to write (CSV)")->required();
   verb->add_flag("--force", options->force, "Replace an existing file");
   verb->add_flag_callback("--list", list_materials, "Print the materials and their relaxation times");

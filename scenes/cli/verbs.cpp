@@ -13,6 +13,54 @@
 
 namespace palpate::cli {
 
+namespace {
+
+struct Called {
+  std::string program = "palpate", line;
+  std::vector<std::string> verbs;
+};
+Called& called() {
+  static Called one;
+  return one;
+}
+
+}  // namespace
+
+const std::string& command_line() { return called().line; }
+
+void set_command_line(const CLI::App& app, const std::string& program, const std::vector<std::string>& words) {
+  std::string line = shell_word(program);
+  for (const std::string& word : words) line += " " + shell_word(word);
+  std::vector<std::string> verbs;
+  for (const CLI::App* verb : app.get_subcommands([](const CLI::App*) { return true; }))
+    verbs.push_back(verb->get_name());
+  called() = {shell_word(program), line, verbs};
+}
+
+std::string with_program_name(std::string text) {
+  constexpr std::string_view kName = "palpate ";
+  for (std::size_t at = 0; (at = text.find(kName, at)) != std::string::npos;) {
+    const std::string rest = text.substr(at + kName.size());
+    const std::string verb = rest.substr(0, rest.find_first_not_of("abcdefghijklmnopqrstuvwxyz"));
+    const bool begins = at == 0 || std::string_view(" \n('`").find(text[at - 1]) != std::string_view::npos;
+    const bool is_command = begins && std::ranges::count(called().verbs, verb) > 0;
+    const std::string name = is_command ? called().program : "palpate";
+    text.replace(at, kName.size() - 1, name);
+    at += name.size() + 1;
+  }
+  return text;
+}
+
+CLI::Validator scene_name() {
+  return {[](const std::string& name) {
+            const auto names = scene_names();
+            return !names || std::ranges::count(*names, name) > 0
+                       ? std::string()
+                       : "unknown scene \"" + name + "\"; known scenes: " + joined(*names);
+          },
+          ""};
+}
+
 CheckRequest check_request(const Scene& scene) { return check_request(scene.jnd, scene.features); }
 
 Result<std::vector<CheckedFile>> check_before_use(const std::vector<std::string>& paths, const CheckRequest& request) {
@@ -20,7 +68,7 @@ Result<std::vector<CheckedFile>> check_before_use(const std::vector<std::string>
   if (!files) return files.error();
   if (const Status usable = refuse_unusable(*files); !usable) return usable.error();
   for (const std::string& line : warning_lines(*files))
-    std::fprintf(stderr, "warning: %s\n", printable(line, std::string::npos).c_str());
+    std::fprintf(stderr, "warning: %s\n", printable(with_program_name(line), std::string::npos).c_str());
   return files;
 }
 
@@ -34,7 +82,7 @@ void print_check_text(const CheckedFile& file) {
                                       : "usable");
   for (const Finding& finding : file.check.findings) {
     std::printf("  %-8s %-17s %s%s%s\n", severity_name(finding.severity), finding.code.c_str(), finding.text.c_str(),
-                finding.advice.empty() ? "" : "; ", finding.advice.c_str());
+                finding.advice.empty() ? "" : "; ", with_program_name(finding.advice).c_str());
   }
   std::printf(
       "  the noise of the force sensor alone leaves %s %% of the contact samples within the JND; this says nothing "
@@ -73,7 +121,7 @@ void print_check(const std::vector<CheckedFile>& files, bool json) {
   if (!refuse_unusable(files)) return;
   std::string next = "next: palpate fit --recording";
   for (const CheckedFile& file : files) next += " " + shell_word(file.path);
-  std::printf("%s --out model.json\n", next.c_str());
+  std::printf("%s --out model.json\n", with_program_name(next).c_str());
 }
 
 Result<std::shared_ptr<const FittedModel>> load_model_file(const std::string& path, const std::string& advice) {

@@ -42,6 +42,15 @@ void add_paper(CLI::App& app, Verbs& verbs);
 void add_hard(CLI::App& app, Verbs& verbs);
 void add_study(CLI::App& app, Verbs& verbs);
 
+// The whole command as it was given, ready to copy, to which advice adds its options; set once by main, whose `app` has
+// all verbs.
+const std::string& command_line();
+void set_command_line(const CLI::App& app, const std::string& program, const std::vector<std::string>& words);
+// `text` with the program as it was called in every command: "palpate check" becomes "build/palpate check".
+std::string with_program_name(std::string text);
+// The name of a scene; another one is wrong usage.
+CLI::Validator scene_name();
+
 // The JND line of the scene, and whether its force has a memory.
 CheckRequest check_request(const Scene& scene);
 

@@ -27,10 +27,12 @@ Result<ConvertedRecording> convert_recording(const std::string& path, const std:
   if (!table) return table.error();
   ConvertedRecording converted;
   converted.path = folder + "/" + std::filesystem::path(path).stem().string() + local_time_text("-%Y%m%d-%H%M%S.csv");
+  if (Status status = check_limits(path, request, *table); !status) return status.error();
   if (Status status = write_recording(converted.path, table->recording, import_origin(path, request, *table), true);
       !status)
     return status.error();
-  converted.words.push_back(table->layout.words(table->encoding));
+  converted.words.push_back(layout_words(*table));
+  for (const std::string& rows : row_words(*table)) converted.words.push_back("rows: " + rows);
   for (std::size_t role = 0; role < kRoles; ++role)
     converted.words.push_back(std::string(kRoleNames[role]) + ": " + column_words(table->columns[role]));
   converted.words.insert(converted.words.end(), table->notes.begin(), table->notes.end());

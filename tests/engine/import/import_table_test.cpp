@@ -1,14 +1,15 @@
-// Tables in the formats of rigs, each with the same press.
+// Tables in the formats of rigs, and tables that only one reading explains, or none. All tables are made up.
 #include "engine/import/import_table.h"
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <numbers>
 
+#include "engine/base/text.h"
 #include "tests/support/message_parts.h"
 #include "tests/support/temporary_folder.h"
 
@@ -17,6 +18,7 @@ namespace {
 
 const std::string kFiles = std::string(PALPATE_SOURCE_DIR) + "/tests/engine/import/files";
 
+// One press of 24 rows: the content of every file.
 RecordingRow press_row(std::size_t i) {
   RecordingRow row;
   row.time_s = 0.02 * static_cast<double>(i);
@@ -26,39 +28,65 @@ RecordingRow press_row(std::size_t i) {
   return row;
 }
 
-ImportRequest request(const RoleRequest& columns, std::initializer_list<const char*> units = {}, double rate_Hz = 0.0) {
+// "--columns time=1 --units mm,N --rate 100 ...", as on the command line.
+ImportRequest request_of(const std::string& options) {
   ImportRequest made;
-  made.columns = columns;
-  for (const char* unit : units) made.units.push_back(*find_unit(unit));
-  if (rate_Hz > 0.0) made.rate_Hz = rate_Hz;
+  std::vector<std::string> words(1);
+  for (const char c : options) c == ' ' ? words.emplace_back() : words.back() += c;
+  for (std::size_t i = 0; i + 1 < words.size(); i += 2) {
+    const std::string &name = words[i], value = words[i + 1] + ",";
+    const auto each = [&](const std::function<void(const std::string&)>& take) {
+      for (std::size_t at = 0, end; (end = value.find(',', at)) != std::string::npos; at = end + 1)
+        take(value.substr(at, end - at));
+    };
+    if (name == "--units") each([&](const std::string& unit) { made.units.push_back(find_unit(unit).value()); });
+    if (name == "--columns") {
+      each([&](const std::string& one) {
+        for (std::size_t role = 0; role < kRoles; ++role)
+          if (one.starts_with(kRoleNames[role])) made.columns[role] = one.substr(one.find('=') + 1);
+      });
+    }
+    if (name == "--rate") made.rate_Hz = std::stod(value);
+    if (name == "--gain") made.gain_N_per_V = std::stod(value);
+    if (name == "--block") made.block = std::stoul(value);
+    if (name == "--skip-bad-rows") made.skip_bad_rows = std::stoul(value);
+    if (name == "--rows") made.rows = LineRange{std::stoul(value), std::stoul(value.substr(value.find('-') + 1))};
+    if (name == "--flip") (value == "force," ? made.flip_force : made.flip_position) = true;
+  }
+  made.command = "palpate import rig.txt" + (options.empty() ? "" : " " + options);
   return made;
 }
 
-// The options that files need; the others need none.
-std::map<std::string, ImportRequest> rig_requests() {
-  std::map<std::string, ImportRequest> requests = {
-      {"01_labview.lvm", request({}, {"mm", "N"})},
-      {"03_rostopic.csv", request({"", "", "field.wrench.force.z"}, {"m", "N"})},
-      {"04_ros2bag.csv", request({}, {"N"})},
-      {"09_arduino.txt", request({"1", "2", "3"}, {"ms", "mm", "g"})},
-      {"10_ati.csv", request({"", "", "4"})},
-      {"19_rate.csv", request({}, {}, 50.0)},
-      {"20_bare.txt", request({"1", "2", "3"}, {"s", "mm", "N"})},
-  };
-  requests["10_ati.csv"].flip_force = true;         // the axis of the sensor points inward
-  requests["22_outward.csv"].flip_position = true;  // a height above the table
-  return requests;
+Result<ImportedTable> import_bytes(const std::string& bytes, const std::string& options = "") {
+  const test::TemporaryFolder folder;
+  const ImportRequest request = request_of(options);
+  auto table = import_table(folder.with_file("rig.txt", bytes), request);
+  if (!table) return Error{test::replaced(table.error().message, folder.path() + "/", "")};
+  return table;
+}
+
+std::string message(const std::string& bytes, const std::string& options = "") {
+  return test::message_of(import_bytes(bytes, options));
 }
 
 TEST(ImportTable, ReadsTheSamePressFromEveryRig) {
-  auto requests = rig_requests();
+  std::map<std::string, std::string> options = {
+      {"01_labview.lvm", "--units mm,N"},
+      {"03_rostopic.csv", "--columns force=field.wrench.force.z --units m,N"},
+      {"04_ros2bag.csv", "--units N"},
+      {"09_arduino.txt", "--columns time=1,position=2,force=3 --units ms,mm,g"},
+      {"10_ati.csv", "--columns force=4 --flip force"},  // the axis of the sensor points inward
+      {"19_rate.csv", "--rate 50"},
+      {"20_bare.txt", "--columns time=1,position=2,force=3 --units s,mm,N"},
+      {"22_outward.csv", "--flip position"},  // a height above the table
+  };
   int files = 0;
   for (const auto& entry : std::filesystem::directory_iterator(kFiles)) {
     const std::string name = entry.path().filename().string();
     if (name == "README.md") continue;
     SCOPED_TRACE(name);
     ++files;
-    const auto table = import_table(entry.path().string(), requests[name]);
+    const auto table = import_table(entry.path().string(), request_of(options[name]));
     ASSERT_TRUE(table.ok()) << table.error().message;
     ASSERT_EQ(table->recording.rows.size(), 24u);
     for (std::size_t i = 0; i < 24; ++i) {
@@ -73,124 +101,240 @@ TEST(ImportTable, ReadsTheSamePressFromEveryRig) {
   EXPECT_EQ(files, 23);
 }
 
-std::string rows_of(const std::string& separator, int count = 12) {
-  std::string text;
-  for (int i = 0; i < count; ++i) {
-    text += "0.0" + std::to_string(10 + i) + separator + "0.5" + separator + std::to_string(i) + ".25\n";
+constexpr int kRows = 200;
+constexpr double kStep_s = 0.01;
+double position_mm(int i) { return 3.0 - 4.0 * std::cos(0.05 * i); }
+double force_N(int i) { return 1.5 * std::max(0.0, position_mm(i)); }
+
+// A header and rows made from a pattern: %t time in s, %m in ms, %u in min, %k in 100 ns, %c 12:30:00.010, %x position
+// in mm, %f force in N, %g in mN, %s whole seconds, %p ms of the second, %b 1 and 2 by turns, %i the row.
+std::string table_of(const std::string& header, const std::string& pattern, int from = 0, int to = kRows) {
+  std::string text = header.empty() ? "" : header + "\n";
+  const auto padded = [](int value, std::size_t digits) {
+    const std::string plain = std::to_string(value);
+    return std::string(digits - std::min(digits, plain.size()), '0') + plain;
+  };
+  for (int i = from; i < to; ++i) {
+    const double t = kStep_s * (i - from);
+    const int ms = 10 * (i - from);
+    for (std::size_t at = 0; at < pattern.size(); ++at) {
+      if (pattern[at] != '%') {
+        text += pattern[at];
+        continue;
+      }
+      switch (pattern[++at]) {
+        case 't': text += fixed(t, 2); break;
+        case 'm': text += std::to_string(ms); break;
+        case 'u': text += fixed(t / 60.0, 7); break;
+        case 'k': text += std::to_string(638450000000000000LL + 10000LL * ms); break;
+        case 'c': text += "12:30:" + padded(ms / 1000, 2) + "." + padded(ms % 1000, 3); break;
+        case 's': text += std::to_string(1700000000 + ms / 1000); break;
+        case 'p': text += std::to_string(ms % 1000); break;
+        case 'x': text += fixed(position_mm(i), 3); break;
+        case 'f': text += fixed(force_N(i), 3); break;
+        case 'g': text += fixed(1e3 * force_N(i), 1); break;
+        case 'b': text += i % 2 == 0 ? "1" : "2"; break;
+        default: text += std::to_string(i);
+      }
+    }
+    text += "\n";
   }
   return text;
 }
 
-Result<ImportedTable> import_bytes(const std::string& bytes, const ImportRequest& request = {}) {
-  const test::TemporaryFolder folder;
-  auto table = import_table(folder.with_file("rig.txt", bytes), request);
-  if (!table) return Error{test::replaced(table.error().message, folder.path() + "/", "")};
-  return table;
+const std::string kHeader = "Time (s),Position (mm),Force (N)";
+const std::string kPlain = table_of(kHeader, "%t,%x,%f");
+std::string rows_of(int from, int to) { return table_of("", "%t,%x,%f", from, to); }
+
+std::string all_replaced(std::string text, const std::string& from, const std::string& to) {
+  for (std::size_t at = 0; (at = text.find(from, at)) != std::string::npos; at += to.size())
+    text.replace(at, from.size(), to);
+  return text;
 }
 
-std::string message(const std::string& bytes, const ImportRequest& request = {}) {
-  const auto table = import_bytes(bytes, request);
-  return table ? "accepted" : table.error().message;
-}
-
-ImportedTable imported(const std::string& bytes, const ImportRequest& request = {}) {
-  const auto table = import_bytes(bytes, request);
-  EXPECT_TRUE(table.ok()) << table.error().message;
-  return table.ok() ? *table : ImportedTable{};
-}
-
-bool notes_have(const ImportedTable& table, const std::string& text) {
-  return std::any_of(table.notes.begin(), table.notes.end(),
-                     [&](const std::string& note) { return note.find(text) != std::string::npos; });
-}
-
-TEST(ImportTable, SaysWhatIsAmbiguousAndWhatToAdd) {
-  EXPECT_TRUE(test::has_parts(message("t [s],pos,Fz [N]\n" + rows_of(",")),
-                              {"rig.txt", "\"pos\"", "--units mm", "--units mm,N"}));
-  EXPECT_TRUE(test::has_parts(message("t [s],pos [mm],Fx [N],Fy [N],Fz [N]\n" + rows_of(",1,")),
-                              {"rig.txt", "3 columns", "--columns force=3", "--columns force=4", "--columns force=5",
-                               "1 \"t [s]\"", "2 \"pos [mm]\"", "3 \"Fx [N]\"", "4 \"Fy [N]\"", "5 \"Fz [N]\""}));
-  EXPECT_TRUE(test::has_parts(message(rows_of(",")), {"rig.txt", "no header", "--columns time=1,position=2,force=3",
-                                                      "--rate HZ", "1 \"0.010\"", "2 \"0.5\"", "3 \"0.25\""}));
-  EXPECT_TRUE(test::has_parts(message("t [s],pos [mm],F [N]\n" + rows_of(","), request({"", "weg", ""})),
-                              {"rig.txt", "\"weg\"", "1 \"t [s]\"", "2 \"pos [mm]\"", "3 \"F [N]\""}));
-}
-
-TEST(ImportTable, SaysWhatIsBrokenAndWhere) {
-  EXPECT_TRUE(test::has_parts(message(""), {"rig.txt", "empty", "; "}));
-  EXPECT_TRUE(test::has_parts(message("PK\x03\x04rest"), {"rig.txt", "Excel", "; "}));
-  EXPECT_TRUE(test::has_parts(message("only words\nand more\n"), {"rig.txt", "2 lines", "; "}));
-  const std::string header = "t [s],pos [mm],F [N]\n";
-  EXPECT_TRUE(test::has_parts(message(header + rows_of(",") + "0.030,oops,1\n0.040,0.5,1\n"),
-                              {"rig.txt:14: ", "\"oops\" in column 2 \"pos [mm]\"", "position", "--skip-bad-rows N"}));
-  EXPECT_TRUE(test::has_parts(message(header + rows_of(",") + "0.020,0.5,1\n"),
-                              {"rig.txt:14:", "0.001 s", "\"t [s]\"", "--rate 1000"}));
-  EXPECT_TRUE(test::has_parts(message(header + rows_of(",", 4)), {"rig.txt", "4 rows", "10", "; "}));
-}
-
-// With a rate, a row whose own time cannot be read counts; the duration of the others is compared.
-TEST(ImportTable, ARateIsComparedWithTheTimesThatCanBeRead) {
-  std::string text = "t [s],pos [mm],F [N]\n";
-  for (int i = 0; i < 100; ++i) text += (i < 99 ? std::to_string(0.01 * i) : "") + ",0.5,1\n";
-  EXPECT_FALSE(notes_have(imported(text, request({}, {}, 100.0)), "by the times"));
-}
-
-TEST(ImportTable, ShiftsTheTimeAndSaysSo) {
-  const ImportedTable table = imported("t [s],pos [mm],F [N]\n" + rows_of(","));
-  EXPECT_EQ(table.recording.rows.front().time_s, 0.0);
-  EXPECT_TRUE(notes_have(table, "0.01 s"));
-}
-
-TEST(ImportTable, KeepsTheFirstOfRowsWithOneTime) {
-  const ImportedTable table = imported("t [s],pos [mm],F [N]\n" + rows_of(",") + "0.021,0.7,9\n0.022,0.5,1\n");
-  ASSERT_EQ(table.recording.rows.size(), 13u);
-  EXPECT_NEAR(table.recording.rows[11].position_m, 0.5e-3, 1e-12);
-  EXPECT_TRUE(notes_have(table, "1 row with the time of the previous row"));
-}
-
-TEST(ImportTable, ComparesARateWithTheTimesOfTheFile) {
-  const std::string text = "t [s],pos [mm],F [N]\n" + rows_of(",");
-  EXPECT_TRUE(notes_have(imported(text, request({}, {}, 500.0)), "0.011 s by the times in the file"));
-  EXPECT_FALSE(notes_have(imported(text, request({}, {}, 1000.0)), "by the times in the file"));
-}
-
-TEST(ImportTable, KnowsUnitsAndNamesOfManyPrograms) {
-  const auto last_row = [](const std::string& head) { return imported(head + rows_of(",")).recording.rows.back(); };
-  EXPECT_NEAR(last_row("Time,Extension,Load\n(s),(mm),(N)\n").position_m, 0.5e-3, 1e-12);
-  EXPECT_NEAR(last_row("time (s),displacement (in),load (kip)\n").position_m, 12.7e-3, 1e-9);
-  EXPECT_NEAR(last_row("time (s),displacement (mm),load (kip)\n").force_N, 11.25 * 4448.2216, 0.1);
-  EXPECT_NEAR(last_row("time (s),displacement (mm),load (kgf)\n").force_N, 11.25 * 9.80665, 1e-6);
-  EXPECT_NEAR(last_row("time (s),displacement (mm),load (lbf)\n").force_N, 11.25 * 4.4482216, 1e-5);
-  for (const char* head :
-       {"Zeit [s],Traversenweg [mm],Standardkraft [N]\n", "Tiempo (s),Desplazamiento (mm),Fuerza (N)\n",
-        "temps (s),d\xC3\xA9placement (mm),effort (N)\n",
-        "time_history (s),displacement_history (mm),force_history (N)\n",
-        "\xE6\x97\xB6\xE9\x97\xB4(s),\xE4\xBD\x8D\xE7\xA7\xBB(mm),\xE5\x8A\x9B(N)\n"}) {
-    EXPECT_NEAR(last_row(head).position_m, 0.5e-3, 1e-12) << head;
-    EXPECT_EQ(last_row(head).force_N, 11.25) << head;
+// Each table has one reading, and its numbers are those of the press.
+TEST(ImportTable, OneReadingIsImported) {
+  struct Case {
+    const char* what;
+    std::string text, options;
+  };
+  const Case cases[] = {
+      {"plain", kPlain, ""},
+      {"seconds and nanoseconds", table_of("secs,nsecs,position_mm,force_N", "%s,%p000000,%x,%f"), ""},
+      {"seconds and milliseconds", table_of("Seconds,Milliseconds,x (mm),F (N)", "%s,%p,%x,%f"), ""},
+      {"ticks of 100 ns since the year 1", table_of("Timestamp,x_mm,F_N", "%k,%x,%f"), ""},
+      {"an equal second clock", table_of("time,F_N,time.1,x_mm", "%t,%f,%t,%x"), "--units s"},
+      {"the arrival before the board's own time", table_of("PC time,millis,x_mm,F_N", "12:31:07,%m,%x,%f"), ""},
+      {"arrivals of a terminal", table_of("12:30:00.1 -> t_ms,x_mm,F_N", "%c -> %m,%x,%f"), ""},
+      {"durations of pandas", table_of("time,x_mm,F_N", "0 days %c,%x,%f"), ""},
+      {"datetime of MATLAB", table_of("Time,x_mm,F_N", "05-Mar-2024 %c,%x,%f"), ""},
+      {"units in the cells", table_of("Time,Position,Force", "%t s,%x mm,%g mN"), ""},
+      {"a column of units", table_of("Force,Unit,Travel,Unit,Time (s)", "%g,mN,%x,mm,%t"), ""},
+      {"a minus sign of a typesetter", all_replaced(kPlain, "-", "\xE2\x88\x92"), ""},
+      {"exponents of Fortran", table_of(kHeader, "%tD+00,%xD+00,%fD+00"), ""},
+      {"lines that end with CR", all_replaced(kPlain, "\n", "\r"), ""},
+      {"a constant column", table_of("Time (s),Distance (mm),Height (mm),F (N)", "%t,%x,12.0,%f"), ""},
+      {"a torque", table_of("t (s),z (mm),torque_nm,Mz (Nm),Fz (N)", "%t,%x,%f1,%f2,%f"), ""},
+      {"a robot", table_of("t_s,z_mm,F_N", "%t,%x,%f"), ""},
+      {"a chosen block", table_of(kHeader, "%t,9,9", 0, 20) + "\n" + kPlain, "--block 2"},
+      {"chosen lines", table_of(kHeader, "%t,9,9", 0, 20) + rows_of(0, kRows), "--rows 22-221"},
+      {"intervals of LabVIEW", "LabVIEW Measurement\nX_Columns\tNo\nDelta_X\t0.01\t0.01\nX0\t0\t0\nX_Value\tF (N)\tx (mm)\n" +
+                                   table_of("", "\t%f\t%x"),
+       ""},
+      {"a remark that is left out", table_of(kHeader, "%t,%x,%f", 0, 8) + "event: hold\n" +
+                                        all_replaced(kPlain, kHeader + "\n" + rows_of(0, 8), ""),
+       "--skip-bad-rows 1"},
+  };
+  for (const Case& one : cases) {
+    SCOPED_TRACE(one.what);
+    const auto table = import_bytes(one.text, one.options);
+    ASSERT_TRUE(table.ok()) << table.error().message;
+    const auto& rows = table->recording.rows;
+    ASSERT_EQ(rows.size(), static_cast<std::size_t>(kRows)) << joined(row_words(*table), "\n");
+    for (int i = 0; i < kRows; ++i) {
+      const RecordingRow& row = rows[static_cast<std::size_t>(i)];
+      EXPECT_NEAR(row.time_s, kStep_s * i, 1e-6) << i;
+      EXPECT_NEAR(row.position_m, 1e-3 * position_mm(i), 1e-6) << i;
+      EXPECT_NEAR(row.force_N, force_N(i), 1e-3) << i;
+    }
   }
 }
 
-TEST(ImportTable, AConstantColumnIsNoTime) {
-  std::string text = "time,t2 [s],pos [mm],F [N]\n";
-  for (int i = 0; i < 12; ++i) text += "5,0.0" + std::to_string(10 + i) + ",0.5," + std::to_string(i) + "\n";
-  EXPECT_EQ(imported(text, request({"", "", ""})).columns[0].number, 2u);
+// The whole error: what was found, and every reading that remains.
+TEST(ImportTable, OtherwiseTheReadingsThatRemainAreCommands) {
+  struct Case {
+    std::string text, options, error;
+  };
+  const std::string command = "\n  palpate import rig.txt ";
+  const std::string blocks = "found numbers in 2 blocks, expected one table that explains every row; choose the rows";
+  const Case cases[] = {
+      {table_of(kHeader, "%t,%x,%f", 0, 60) + kPlain, "",
+       "rig.txt: " + blocks + command + "--block 1  # lines 2 to 61: 60 rows of 3 fields" + command +
+           "--block 2  # lines 63 to 262: 200 rows of 3 fields"},
+      {"2020,3,2,12,30,45\n" + table_of("", "%x,%f"), "--columns position=1,force=2",
+       "rig.txt: " + blocks + command + "--columns position=1,force=2 --block 1  # line 1: 1 row of 6 fields" + command +
+           "--columns position=1,force=2 --block 2  # lines 2 to 201: 200 rows of 2 fields"},
+      {kHeader + "\n1,2,3\n" + rows_of(0, kRows), "",
+       "rig.txt: " + blocks + command + "--block 1  # line 2: 1 row of 3 fields" + command +
+           "--block 2  # lines 3 to 202: 200 rows of 3 fields"},
+      {table_of(kHeader, "%t,%x,%f", 0, 8) + "event: hold\n" + rows_of(8, 60), "",
+       "rig.txt: " + blocks + command + "--skip-bad-rows 1  # all rows, without the text between them" + command +
+           "--block 1  # lines 2 to 9: 8 rows of 3 fields" + command +
+           "--block 2  # lines 11 to 62: 52 rows of 3 fields"},
+      {kPlain + rows_of(60, 100), "",
+       "rig.txt:202: found a time 1.99 s before that of the row above \"Time (s)\", expected later times in every row; "
+       "choose the rows" +
+           command + "--rows 2-201  # 200 lines" + command + "--rows 202-241  # 40 lines"},
+      {table_of("Time,x_mm,F_N", "%u,%x,%f"), "",
+       "rig.txt: found no unit of the time \"Time\" and steps of 0.0001667, expected one of s, ms, us, ns, ticks, min, "
+       "h, days; add it with --units, or --rate HZ if the rows are evenly spaced" +
+           command + "--units s  # 5998.8 Hz" + command + "--units min  # 99.98 Hz"},
+      {table_of("Time,x_mm,F_N", "12:30:00:%m,%x,%f"), "",
+       "rig.txt:2: found the time \"12:30:00:0\", which is no number and no time that is understood; write seconds "
+       "(0.010), or hours:minutes:seconds with a decimal mark (14:03:22.010), or, if the rows are evenly spaced, add "
+       "--rate HZ"},
+      {table_of("host_s,t_us,x_mm,F_N", "%i,%m000,%x,%f"), "",
+       "rig.txt: found two clocks that differ by up to 197.01 s, in columns 2 \"t_us\" and 1 \"host_s\", expected one; "
+       "choose the time" +
+           command + "--columns time=2  # \"t_us\": 1.99 s" + command + "--columns time=1  # \"host_s\": 199 s"},
+      {"X_Columns\tNo\nDelta_X\t0.01\t0.1\nX0\t0\t0\nX_Value\tF (N)\tx (mm)\n" + table_of("", "\t%f\t%b"), "",
+       "rig.txt: found two clocks, with a position every 0.1 s from 0 s on and a force every 0.01 s from 0 s on, "
+       "expected one interval; export both channels with one"},
+      {table_of("specimen,t_s,x_mm,F_N", "%b,%t,%x,%f"), "",
+       "rig.txt: found rows of 2 series that alternate, by column 1 \"specimen\" (1, 2), expected one; write the rows "
+       "of each into a file of its own"},
+      {"Time (s),Position (m),Force (N)\ns,mm,N\n" + rows_of(0, kRows), "",
+       "rig.txt:1: found two units of the position \"Position (m)\": m in the name and mm in the row of units, expected "
+       "one; correct the header"},
+      {table_of("Force,Unit,x (mm),t (s)", "%g,mN,%x,%t"), "--units N",
+       "rig.txt: found the unit mN in the rows of the force \"Force\", expected N, as --units says; correct the one "
+       "that is wrong"},
+      {table_of("t_s,x_mm,fsr,accel_z_g", "%t,%x,%i,%f"), "",
+       "rig.txt: found no column that is clearly the force, expected one column for each of time, position and force; "
+       "the columns are 1 \"t_s\", 2 \"x_mm\", 3 \"fsr\", 4 \"accel_z_g\"" +
+           command + "--columns force=3  # \"fsr\""},
+      {kPlain.substr(0, kPlain.size() - 7), "",
+       "rig.txt:201: found \"1.99,6.461\", expected a row of 3 fields" + command +
+           "--skip-bad-rows 1  # without 1 such row; the other rows keep their times"},
+      {table_of("x (mm),F (N)", "%x,%f", 0, 40) + "1.0,OL\n" + table_of("", "%x,%f", 40, 60), "--rate 100",
+       "rig.txt:42: found \"OL\" in column 2 \"F (N)\", expected a number; repair the value, or leave the row out" +
+           command + "--rate 100 --skip-bad-rows 1  # without 1 such row; the other rows keep their times"},
+      {"time,position,force\ntime,force,position\n" + rows_of(0, kRows), "",
+       "rig.txt:1: found names of columns in this line and in line 2 that put the position and the force into different "
+       "columns, expected one header; remove the wrong line, or say which column is which by their numbers: --columns "
+       "time=N,position=N,force=N"},
+      {table_of("Time (s),Weg (mm),Load (stone)", "%t,%x,%f"), "",
+       "rig.txt:1: found the unit \"stone\" in column 3 \"Load (stone)\", expected a unit of force (N, mN, uN, nN, pN, "
+       "cN, dN, daN, kN, g, kg, ozf, lbf, kip); convert the column, choose another with --columns force=NAME, or give "
+       "the unit of the numbers with --units"},
+      {"only words\nand more\n", "",
+       "rig.txt: found no rows of numbers in the first 2 lines, expected a table with columns of time, position and "
+       "force; export the recording as CSV"},
+  };
+  for (const Case& one : cases) {
+    EXPECT_EQ(message(one.text, one.options), one.error);
+  }
+  EXPECT_NE(message(""), "accepted");
+  EXPECT_NE(message("PK\x03\x04rest"), "accepted");
 }
 
-TEST(ImportTable, ReadsAMeasuredVelocity) {
-  const auto table = [](double factor) {
-    std::string text = "t [s],pos [mm],F [N],Speed (mm/s)\n";
-    for (int i = 0; i < 40; ++i) {
-      const double t = 0.01 * i;
-      for (const double value : {t, 3.0 * t * t, 1.0 + t, factor * 6.0 * t}) text += std::to_string(value) + ",";
-      text.back() = '\n';
-    }
-    return imported(text);
-  };
-  const ImportedTable good = table(1.0);
-  EXPECT_TRUE(good.recording.columns.velocity);
-  EXPECT_NEAR(good.recording.rows[20].velocity_m_per_s, 1.2e-3, 1e-8);
-  EXPECT_FALSE(table(-1.0).recording.columns.velocity);  // not the rate of the position
+// A row that is left out leaves its time.
+TEST(ImportTable, ARowThatIsLeftOutLeavesItsTime) {
+  std::string text = "x (mm),F (N)\n";
+  for (int i = 0; i < 100; ++i) text += fixed(position_mm(i), 3) + (i >= 40 && i < 50 ? ",OL\n" : "," + fixed(force_N(i), 3) + "\n");
+  const auto table = import_bytes(text, "--rate 100 --skip-bad-rows 10");
+  ASSERT_TRUE(table.ok()) << table.error().message;
+  ASSERT_EQ(table->recording.rows.size(), 90u);
+  EXPECT_NEAR(table->recording.rows.back().time_s, 0.99, 1e-9);
+  ASSERT_EQ(table->left_out.size(), 1u);
+  EXPECT_EQ(row_words(*table), (std::vector<std::string>{"90 read, lines 2 to 101",
+                                                         "left out 10 rows (unreadable), lines 42 to 51"}));
+  std::string coarse = "Time;x (mm);F (N)\n";
+  for (int i = 0; i < 200; ++i)
+    coarse += "12:30:" + std::to_string(10 + i / 20) + ";" + std::to_string(i) + ";" +
+              (i == 30 ? "OL" : std::to_string(i)) + "\n";
+  const auto clock = import_bytes(coarse, "--skip-bad-rows 1");
+  ASSERT_TRUE(clock.ok()) << clock.error().message;
+  EXPECT_NEAR(clock->recording.rows.back().time_s, 9.95, 1e-9);
+}
+
+TEST(ImportTable, DayAndMonthAreDecidedOnceForTheColumn) {
+  for (const char* form : {"12/03/2024 23:59:%;13/03/2024 00:00:%", "03/12/2024 23:59:%;03/13/2024 00:00:%"}) {
+    const std::string both = form, before = both.substr(0, both.find(';')), after = both.substr(before.size() + 1);
+    std::string text = "Timestamp,x (mm),F (N)\n";
+    for (int i = 0; i < 120; ++i)
+      text += all_replaced(i < 60 ? before : after, "%", fixed(i < 60 ? 54.0 + 0.1 * i : 0.1 * (i - 60), 3)) + "," + std::to_string(i) +
+              ",2" + std::to_string(i) + "\n";
+    const auto table = import_bytes(all_replaced(text, ":0.", ":00."));
+    ASSERT_TRUE(table.ok()) << table.error().message;
+    EXPECT_NEAR(table->recording.rows.back().time_s, 11.9, 1e-6) << form;
+  }
+}
+
+TEST(ImportTable, TheLimitsAreThoseAfterTheCorrections) {
+  auto table = import_bytes(table_of("t_s,z_m,F_N", "%t,1.2%i,%f", 10, 99));
+  ASSERT_TRUE(table.ok()) << table.error().message;
+  const ImportRequest request = request_of("--out r.csv");
+  EXPECT_EQ(check_limits("rig.txt", request, *table).error().message,
+            "rig.txt: found the position 1.298 m, expected metres from the surface, at most 1 either way; move position "
+            "0\n  palpate import rig.txt --out r.csv --zero contact  # where the force begins\n"
+            "  palpate import rig.txt --out r.csv --zero first  # the first row");
+  for (RecordingRow& row : table->recording.rows) row.position_m -= 1.25;
+  EXPECT_TRUE(check_limits("rig.txt", request, *table).ok());
+}
+
+TEST(ImportTable, KeepsTheVelocityOfARecording) {
+  const auto table = test::must(import_bytes(table_of("time_s,position_m,force_N,velocity_m_per_s", "%t,0.00%i,%f,0.1%i", 10, 99)));
+  EXPECT_TRUE(table.recording.columns.velocity);
+  EXPECT_NEAR(table.recording.rows[2].velocity_m_per_s, 0.112, 1e-12);
+}
+
+TEST(ImportTable, AGainOrAUnitOfTheUserOverridesTheHeaderWithAWarning) {
+  const auto volts = test::must(import_bytes(table_of("t_s,x_mm,F (N)", "%t,%x,%f"), "--gain 2"));
+  EXPECT_NEAR(volts.recording.rows.back().force_N, 2.0 * force_N(kRows - 1), 1e-3);
+  EXPECT_TRUE(test::has_parts(joined(volts.notes), {"warning: the force", "in V as --gain says", "its header says N"}));
+  const auto stone = test::must(import_bytes(table_of("t_s,x_mm,F (stone)", "%t,%x,%f"), "--units N"));
+  EXPECT_TRUE(test::has_parts(joined(stone.notes), {"warning", "read in N as --units says", "stone"}));
 }
 
 }  // namespace

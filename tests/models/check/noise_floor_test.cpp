@@ -17,9 +17,7 @@ TEST(NoiseFloor, IsThatOfANormalErrorAtOneForce) {
   for (int i = 0; i < 20000; ++i) recording.rows.push_back({1e-3 * i, 1e-3, 0.065 * random.normal()});
   const PreparedRecordingPointer prepared = prepare_recording(recording);
   const NoiseFloor floor = noise_floor({prepared.get()}, JndLine{0.065, 0.0});
-  // The noise is identified from the quietest fifth of the recording. In pure noise this
-  // underestimates it by up to a seventh.
-  EXPECT_NEAR(floor.force_noise_N, 0.065, 0.010);
+  EXPECT_NEAR(floor.force_noise_N, 0.065, 0.002);  // the standard error of the 0.2 quantile of 400 windows, twice
   const double noise_over_jnd = floor.force_noise_N / 0.065;
   EXPECT_NEAR(floor.within_jnd, std::erf(1.0 / (std::sqrt(2.0) * noise_over_jnd)), 0.01);
   EXPECT_NEAR(floor.p99_error_over_jnd, 2.576 * noise_over_jnd, 0.03);
@@ -47,7 +45,7 @@ TEST(NoiseFloor, ContactCountsFromTheSurface) {
   int count = 0;
   for (const RecordingRow& row : prepared->recording.rows) {
     if (!(row.position_m > 1e-3)) continue;
-    sum += std::erf(jnd.at(2000.0 * (row.position_m - 1e-3)) / (std::sqrt(2.0) * prepared->force_noise_N));
+    sum += std::erf(jnd.at(2000.0 * (row.position_m - 1e-3)) / (std::sqrt(2.0) * white_force_noise_N(*prepared)));
     ++count;
   }
   EXPECT_NEAR(noise_floor({prepared.get()}, jnd).within_jnd, sum / count, 0.005);

@@ -1,6 +1,8 @@
 // The program palpate import.
 #include <gtest/gtest.h>
 
+#include <nlohmann/json.hpp>
+
 #include "engine/recording/recording.h"
 #include "tests/support/message_parts.h"
 #include "tests/support/run_program.h"
@@ -17,15 +19,26 @@ TEST(ImportVerb, WritesARecordingAndPrintsTheGuesses) {
   const test::TemporaryFolder folder;
   const auto run = test::must_run({"import", kFiles + "08_excel_de.csv", "--out", folder.file("rec.csv")});
   EXPECT_TRUE(test::has_parts(
-      run.out, {"semicolon", "decimal comma", "UTF-8", "line 1", "line 2", "position", "2 \"Weg [mm]\"", "mm"}));
+      run.out, {"semicolon", "decimal comma", "UTF-8", "line 1", "24 read, lines 2 to 25", "position",
+                "2 \"Weg [mm]\" in mm", " check "}));
   EXPECT_EQ(test::must(read_recording(folder.file("rec.csv"))).rows.size(), 24u);
 }
 
-TEST(ImportVerb, AGainOfAForceInNewtonsIsAWarning) {
+// The commands of a refusal are complete: one of them leads to a recording.
+TEST(ImportVerb, TheCommandsOfARefusalCanBeRun) {
   const test::TemporaryFolder folder;
-  const auto run =
-      test::must_run({"import", kFiles + "08_excel_de.csv", "--gain", "2", "--out", folder.file("rec.csv")});
-  EXPECT_TRUE(test::has_parts(run.out, {"warning: the force", "in V as --gain says", "its header says mN"}));
+  const std::string press = test::read_text(kFiles + "02_matlab.csv");
+  const std::string both = folder.with_file("both.csv", press + press), out = folder.file("rec.csv");
+  const auto refused = run_palpate({"import", both, "--out", out, "--json"});
+  EXPECT_EQ(refused.exit_code, 1);
+  EXPECT_TRUE(test::has_parts(refused.err, {"error: " + both + ": found numbers in 2 blocks",
+                                            " import " + both + " --out " + out + " --json --block 1  # lines 2 to 25",
+                                            " --block 2  # lines 27 to 50"}));
+  const auto json = nlohmann::json::parse(test::must_run({"import", both, "--out", out, "--json", "--block", "2"}).out);
+  EXPECT_EQ(json["rows"], 24);
+  EXPECT_EQ(json["first_line"], 27);
+  EXPECT_EQ(json["left_out"][0].dump(),
+            R"({"first_line":2,"last_line":25,"reason":"in another block","rows":24})");
 }
 
 TEST(ImportVerb, WritesOverNothingWithoutForceAndLeavesNothingAfterAnError) {
@@ -75,7 +88,9 @@ TEST(ImportVerb, WrongUsageEndsWithTwo) {
                                                                                      {"--rate", "nan"},
                                                                                      {"--gain", "0"},
                                                                                      {"--gain", "nan"},
-                                                                                     {"--skip-bad-rows", "-1"}}) {
+                                                                                     {"--skip-bad-rows", "-1"},
+                                                                                     {"--rows", "9-2"},
+                                                                                     {"--tare", "x"}}) {
     std::vector<std::string> arguments = {"import", file, "--out", out};
     arguments.insert(arguments.end(), extra.begin(), extra.end());
     EXPECT_EQ(run_palpate(arguments).exit_code, 2) << extra.back();

@@ -47,6 +47,21 @@ TEST(Main, MistypedOptionIsNamedWithTheNearestOne) {
   EXPECT_TRUE(test::fails(2, {"replay", "--modle=m.json"}, {"--modle", "did you mean --model?"}));
 }
 
+TEST(Main, WrongUsageSaysWhatIsWrong) {
+  const test::TemporaryFolder folder;
+  const std::string out = folder.file("x.csv");
+  EXPECT_TRUE(test::fails(2, {"fit", "--recording", "--out", "m.json"}, {"--recording: found no value, expected one"}));
+  EXPECT_TRUE(test::fails(2, {"synth", "--material", "foam", "--seconds", "abc", "--out", out},
+                          {"found \"abc\", expected a number from 0.1 to 1000000"}));
+  EXPECT_TRUE(test::fails(2, {"study", "simulate", "--subjects", "abc", "--out", out},
+                          {"expected a number from 1 to 99", "palpate study simulate --help explains"}));
+  EXPECT_TRUE(test::fails(2, {"check", out, "--scene", "no_such"}, {"unknown scene \"no_such\"; known scenes: "}));
+  EXPECT_TRUE(test::fails(2, {"record", "--device", "no_such", "--out", out}, {"unknown device \"no_such\""}));
+  EXPECT_TRUE(test::fails(2, {"replay", "--recording", out, "--model", "m.json", "--plot", "x.bmp"},
+                          {"found x.bmp, expected a file that ends in .svg or .png"}));
+  EXPECT_TRUE(test::has_parts(test::must_run({"help", "fit"}).out, {"palpate fit", "--recording"}));
+}
+
 TEST(Main, EveryVerbHasAnExampleAndTheVersionSaysWhatComputes) {
   for (const char* verb : {"synth", "import", "check", "fit", "replay", "export", "report", "paper", "hard", "record",
                            "scenes", "devices", "study"}) {

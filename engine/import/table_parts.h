@@ -1,0 +1,217 @@
+// The parts of a foreign table, inside this room: text, cells, units, blocks of rows, headers, and the roles of
+// columns. Thread guarantee: slow side only.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "engine/import/import_table.h"
+
+namespace palpate {
+
+// Text (table_text.cpp). ---------------------------------------------------------------------------------------------
+
+struct ForeignText {
+  std::string text;  // UTF-8 without byte order mark; minus signs and blanks of Unicode are those of ASCII
+  std::string_view encoding = "UTF-8";  // of the file: UTF-8, Latin-1 or UTF-16
+  bool has_arrivals = false;            // a terminal put a time before each line ("12:30:01.5 -> "): the first column
+};
+// Errors: no such file, not a regular file, unreadable, too large, empty, an Excel workbook or another binary file;
+// each with advice.
+Result<ForeignText> read_foreign_text(const std::string& path);
+// The lines without their ends: LF, CRLF, or CR alone.
+std::vector<std::string_view> lines_of(std::string_view text);
+
+struct Delimiter {
+  std::string_view name;
+  std::string_view marks;  // characters that separate two fields
+
+  bool is_blanks() const noexcept { return marks.size() > 1; }
+};
+// In the order in which they are tried.
+inline constexpr std::array kDelimiters = {Delimiter{"tab", "\t"}, Delimiter{"semicolon", ";"}, Delimiter{"comma", ","},
+                                           Delimiter{"blanks", " \t"}};
+using Fields = std::vector<std::string_view>;
+// The fields of one line without blanks and quotes around them. `fields` is replaced; empty fields at the end of the
+// line are omitted. Returns the number of fields with these.
+std::size_t split_table_fields(std::string_view line, const Delimiter& delimiter, Fields& fields);
+
+// Cells (table_cell.cpp). --------------------------------------------------------------------------------------------
+
+// Whether `text` is a number, which is then in `value`: "0.5", "-1,25e-3", "+3", "1.5D+00"; also with unambiguous
+// thousands marks: the other mark, an apostrophe or a blank, in groups of three, followed by the decimal mark or
+// repeated ("1,234.5", "1.234.567"). NaN and infinity are not numbers.
+bool parse_table_number(std::string_view text, char decimal, double& value);
+// A number, or a number with a unit ("1.5 mm").
+struct TableCell {
+  double value = 0.0;
+  std::optional<Unit> unit{};
+};
+std::optional<TableCell> parse_table_cell(std::string_view text, char decimal);
+// "nan", "-", "---", "n/a", "OL": a cell for a missing value.
+bool is_missing_value(std::string_view text);
+// Whether `field` is a date, a time of day or a duration: "2024-03-05T14:03:22.123Z", "05.03.2024 14:03:22.1",
+// "3/5/2024 2:03:22.5 PM", "05-Mar-2024 14:03:22", "14:03:22.123", "03:22.123", "0 days 00:00:01.5".
+bool is_of_a_clock(std::string_view field);
+
+// The times of the rows, from the cells of one column, and of a second one for the fraction of its seconds.
+class RowTimes {
+ public:
+  RowTimes() = default;
+  // Decides from all cells of the column whether they are those of a clock, and the order of day and month. Errors: a
+  // cell that is no time, and what to write instead.
+  Status examine(const Fields& cells, char decimal);
+  void add_fractions(double to_s) { fraction_s_ = to_s; }
+
+  bool are_of_a_clock() const noexcept { return clock_; }
+  bool have_dates() const noexcept { return has_date_; }
+  bool are_whole_seconds() const noexcept { return whole_; }
+  double median_step() const noexcept { return median_step_; }
+  double mean_step() const noexcept { return mean_step_; }
+  double first_cell() const noexcept { return first_cell_; }
+
+  // The time since the first call in the unit of the file (a clock: s); none if the cell is no time. A clock without
+  // dates that goes back by more than half a day has passed midnight.
+  std::optional<double> since_first(std::string_view cell, std::string_view fraction = {});
+  int midnights() const noexcept { return midnights_; }
+
+ private:
+  // A whole number and a fraction, so that nanoseconds since 1970 keep their digits.
+  struct Time {
+    std::int64_t whole = 0;
+    double fraction = 0.0;
+  };
+  static double since(const Time& time, const Time& first) {
+    return static_cast<double>(time.whole - first.whole) + (time.fraction - first.fraction);
+  }
+  static std::optional<Time> parse_clock(std::string_view text, bool day_first);
+  static std::optional<Time> parse_number(std::string_view text, char decimal);
+  std::optional<Time> parse(std::string_view cell) const {
+    return clock_ ? parse_clock(cell, day_first_) : parse_number(cell, decimal_);
+  }
+  friend bool is_of_a_clock(std::string_view field);
+
+  char decimal_ = '.';
+  bool clock_ = false, has_date_ = false, whole_ = false, day_first_ = true;
+  double fraction_s_ = 0.0, median_step_ = 0.0, mean_step_ = 0.0, first_cell_ = 0.0, last_ = 0.0;
+  std::optional<Time> first_;
+  int midnights_ = 0;
+};
+
+struct RepeatedTimes {
+  std::size_t rows = 0;           // number of rows with the time of the row above
+  bool copies = true;             // all of them have its position and force, too
+  double mean_rate_Hz = 0.0;      // of evenly spaced rows
+  double step_s = 0.0;            // median step of the times
+  std::optional<double> rate_Hz;  // the same if the clock is coarse: equal steps, equally many rows for each time
+};
+// `rows`: times that do not fall.
+RepeatedTimes find_repeated_times(const std::vector<RecordingRow>& rows);
+
+// Units (units.cpp). -------------------------------------------------------------------------------------------------
+
+// Whether `list`, words separated by blanks, contains this word.
+bool is_word_of(std::string_view list, std::string_view word);
+struct NameAndUnit {
+  std::string name{};          // without the unit
+  std::optional<Unit> unit{};  // when it is known
+  std::string foreign_unit{};  // unknown unit: "%", "degC", "hN"
+};
+// Whether `text` is a unit of another quantity or a word for a number without a unit: "%", "MPa", "mm/s", "cycles".
+bool is_other_unit(std::string_view text);
+// The size in volts of the unit in `text`, "V" or "mV" in any common spelling; 0: no voltage.
+double volts_of(std::string_view text);
+// Separates the name and the unit of a column: "Pos [mm]", "Fz (mN)", "t/ms", "Force_N", "Standardkraft in N".
+NameAndUnit split_name_and_unit(std::string_view header);
+
+// Blocks of rows, and their header (table_blocks.cpp, table_header.cpp). ---------------------------------------------
+
+// A run of rows of numbers.
+struct Block {
+  std::size_t begin = 0, end = 0;  // lines
+  std::size_t rows = 0, fields = 0;
+};
+struct TableLayout {
+  Delimiter delimiter;
+  char decimal = '.';
+  std::size_t fields = 0;      // of a row, empty ones included
+  std::size_t columns = 0;     // of a row; empty cells at its end do not count
+  std::size_t widest = 0;      // fields of the widest rows that are no exception
+  bool first_is_word = false;  // of most rows
+  std::vector<Block> blocks{};
+  bool skippable = true;  // the lines between the blocks are no headers, so that they may be left out
+
+  Fields names{};          // one a column, unless `misfit`; empty without a header
+  bool misfit = false;     // the number of names is not that of the columns
+  Fields units{};          // one a column; empty without a row of units
+  std::size_t header = 0;  // line, from 1; 0 without a header
+  std::size_t rival = 0;   // a line that names other columns for position and force than the header, from 1
+  // From a file of LabVIEW without times: the interval and the first time of each column.
+  std::vector<double> steps_s{}, starts_s{};
+};
+// Tries every pair of separator and decimal mark; preferred are those in which no field begins like a number without
+// being one, then the one with the most numbers. Then every line is put into a block of rows. A line of text between
+// rows ends a block, unless `most_bad` more lines may be left out. `given_decimal`: the decimal mark if the user has
+// given it. Errors (without the file's name): no rows of numbers; a comma that may be either mark.
+Result<TableLayout> find_table_layout(const std::vector<std::string_view>& lines, std::optional<char> given_decimal,
+                                      std::uint64_t most_bad);
+// Whether a line is a row of the table, perhaps damaged, by its numbers.
+bool is_row(const TableLayout& layout, std::string_view line, Fields& fields);
+// Finds the lines of names and of units shortly above the row `first`, and sets them in `layout`. Preferred: a line
+// that names at least two of time, position and force (boards print their status below the header); among these one
+// split by the separator of the table, then the one with more names and units, then the nearest.
+void find_table_header(const std::vector<std::string_view>& lines, std::size_t first, TableLayout& layout);
+
+// Columns (column_roles.cpp). ----------------------------------------------------------------------------------------
+
+struct ForeignColumn {
+  std::string header{};  // as in the file; without a header its first value
+  NameAndUnit parts{};
+  std::string other_unit{};           // of the row of units, where it contradicts the header
+  bool constant = true;               // in all rows
+  bool is_units = true;               // every cell is a unit: that of the column before
+  bool is_clock = true;               // every cell is of a clock
+  bool is_whole = true;               // every cell is a whole number
+  std::vector<std::string> values{};  // the first different ones, at most kMostValues
+  std::size_t changes = 0;            // rows with another value than the row above
+};
+inline constexpr std::size_t kMostValues = 40;
+NameAndUnit header_parts(std::string_view header);
+
+// How well a line names the columns of a table: the roles that its fields name, by words or units, and the sum of the
+// strongest claims.
+struct NamedRoles {
+  int count = 0, strength = 0;
+  std::array<std::size_t, kRoles> column{};  // from 1; 0: none, or several with equal claims
+
+  // Whether both name other columns for the position and for the force.
+  bool contradicts(const NamedRoles& other) const;
+};
+NamedRoles named_roles(const Fields& fields);
+
+// An option that makes a table readable, and what it means.
+struct Reading {
+  std::string option, meaning;
+};
+struct RoleChoice {
+  std::array<std::size_t, kRoles> number{};  // of the column of each role, from 1; 0 without a time
+  std::vector<std::size_t> times{};          // all columns that claim to be the time, from 1
+  std::string problem{};                     // otherwise
+  std::vector<Reading> readings{};
+};
+// Chooses a column for each role. `needs_time`: false with a given rate. Problems: an unknown name; no column or
+// several for a role; one for two roles; a unit that contradicts the name ("Position (N)").
+RoleChoice choose_columns(const std::vector<ForeignColumn>& columns, const RoleRequest& request, bool has_header,
+                          bool needs_time);
+// The part of a second that a column counts, from its name: "nanosec" 1e-9; 0: none.
+double fraction_unit_s(const ForeignColumn& column);
+// Whether a column says what a row belongs to ("specimen", "sensor_id").
+bool identifies(const ForeignColumn& column);
+// The columns for a message: 1 "Zeit [s]", 2 "Weg [mm]".
+std::string list_columns(const std::vector<ForeignColumn>& columns);
+
+}  // namespace palpate
