@@ -337,6 +337,18 @@ int palpate_sensor_of(const palpate_recording* given, palpate_sensor* sensor) {
   });
 }
 
+int palpate_stream_start_after(palpate_stream* stream, const palpate_recording* before, char* error,
+                               size_t error_size) {
+  return made<int>(-1, error, error_size, [&]() -> Result<int> {
+    if (stream == nullptr || before == nullptr || before->size == 0 || before->time_s == nullptr ||
+        before->position_m == nullptr)
+      return Error{"found no stream, or no time or position of the recording before it, expected all of them"};
+    stream->reset();
+    stream->tick().start_after(recording_of(*before));
+    return 0;
+  });
+}
+
 void palpate_stream_free(palpate_stream* stream) { delete stream; }
 
 void palpate_stream_reset(palpate_stream* stream) {

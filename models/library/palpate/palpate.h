@@ -108,6 +108,10 @@ PALPATE_API palpate_stream* palpate_stream_new_with_sensor(const palpate_model*,
  * positions are not quantised; position_noise_m is then their noise. Slow side. Returns 0, or -1 for NULL. */
 PALPATE_API int palpate_sensor_of(const palpate_recording*, palpate_sensor*);
 
+/* Resets the stream; its next samples continue this recording of the same rig, whose presses the material remembers.
+ * Otherwise a stream begins at rest. Slow side. Returns 0, or -1 without a stream, a sample, a time or a position. */
+PALPATE_API int palpate_stream_start_after(palpate_stream*, const palpate_recording*, char* error, size_t error_size);
+
 PALPATE_API void palpate_stream_free(palpate_stream*);
 /* Resets the motion estimate and the filters; the next sample may have any time. Wait-free. */
 PALPATE_API void palpate_stream_reset(palpate_stream*);

@@ -120,6 +120,11 @@ class Stream {
   Stream(const Model& model, const Sensor& sensor)
       : stream_(detail::checked(palpate_stream_new_with_sensor, model.handle(), &sensor)) {}
 
+  // Resets; the next samples continue this recording of the same rig. Slow side.
+  void start_after(const Recording& recording) {
+    detail::checked(palpate_stream_start_after, stream_.get(), &*recording);
+  }
+
   double force(double time_s, double position_m) noexcept {
     return palpate_stream_force(stream_.get(), time_s, position_m);
   }

@@ -129,6 +129,22 @@ TEST_F(LibraryC, WithNoStepTheSensorIsThatOfTheModelsRecordings) {
   compare(recording, data, one.get());
 }
 
+TEST_F(LibraryC, AStreamContinuesARecordingAsReplayDoes) {
+  EXPECT_EQ(palpate_stream_start_after(nullptr, nullptr, error_, sizeof error_), -1);
+  const Recording before = test::example_recording(1200, 1000.0), recording = test::example_recording(800, 1000.0);
+  std::vector<double> time_s, position_m;
+  for (const RecordingRow& row : before.rows) time_s.push_back(row.time_s), position_m.push_back(row.position_m);
+  const palpate_recording given{"", time_s.size(), time_s.data(), position_m.data(), nullptr, nullptr, nullptr};
+  for (const ModelData& data : test::example_models()) {
+    const StreamPtr one = stream(load(save(data)), sensor_of(recording));
+    ASSERT_EQ(palpate_stream_start_after(one.get(), &given, error_, sizeof error_), 0) << error_;
+    const auto visit = [&](const RecordingRow& row, const TickSnapshot& snapshot, const HapticsTick&) {
+      ASSERT_EQ(palpate_stream_force(one.get(), row.time_s, row.position_m), snapshot.force_N[0]) << data.name;
+    };
+    replay(recording, {std::make_shared<FittedModel>(data)}, visit, 0.0, &before);
+  }
+}
+
 TEST_F(LibraryC, AResetBeginsANewStream) {
   const Recording recording = test::example_recording(800, 1000.0, 30e-6);
   const ModelData data = test::example_models().front();

@@ -134,6 +134,7 @@ _SIGNATURES = {
     "palpate_sensor_of": (_INT, [_RECORDING, ctypes.POINTER(Sensor)]),
     "palpate_stream_new_with_sensor": (_HANDLE, [_HANDLE, ctypes.POINTER(Sensor), *_MESSAGE]),
     "palpate_stream_new": (_HANDLE, [_HANDLE, _DOUBLE, *_MESSAGE]),
+    "palpate_stream_start_after": (_INT, [_HANDLE, _RECORDING, *_MESSAGE]),
     "palpate_stream_free": (None, [_HANDLE]),
     "palpate_stream_reset": (None, [_HANDLE]),
     "palpate_stream_force": (_DOUBLE, [_HANDLE, _DOUBLE, _DOUBLE]),

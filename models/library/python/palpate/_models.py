@@ -173,12 +173,17 @@ class Stream(Handle):
     """One tool in one material: palpate_stream of palpate.h. One thread at a time. The model may be deleted before.
 
     `sensor`: a `Sensor`, or the step of an encoder [m]; 0, the default, is the sensor of the model's recordings, and
-    ``Sensor()`` that of exact positions.
+    ``Sensor()`` that of exact positions. `after`: the recording of the same rig that the stream continues, whose press
+    the material remembers; by default it is at rest.
     """
 
-    def __init__(self, model: Model, sensor: Sensor | float = 0):
+    def __init__(self, model: Model, sensor: Sensor | float = 0, after: object = None):
         self._library = library()
         super().__init__(new_stream(expect("model", model, Model)._handle, sensor), self._library.palpate_stream_free)
+        if after is not None:
+            before = as_recording(after)
+            call("palpate_stream_start_after", self._handle,
+                 RecordingStruct.of({name: before[name] for name in before.dtype.names}, before.name))
 
     def force(self, time_s: float, position_m: float) -> float:
         """Takes the next sample and returns the force of the material [N]; 0 if it is refused (`accepted`). For a hand
