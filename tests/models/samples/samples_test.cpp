@@ -124,7 +124,7 @@ TEST(Samples, WhereEveryPositionHasAForceTheSurfaceIsOutsideOfAll) {
   constexpr double kRange_m = 7e-3;
   EXPECT_NEAR(surface_m(-2e-3, 4000, false), -2e-3 - 0.05 * kRange_m, 1e-12);
   EXPECT_EQ(surface_m(-2e-3, 5, false), 0.0) << "fewer than ten rows and 1 %";
-  EXPECT_EQ(surface_m(-0.05e-3, 4000, false), 0.0) << "hardly outside of 0";
+  EXPECT_LT(surface_m(-0.05e-3, 4000, false), -1e-3) << "hardly outside of 0: where the line through the forces is 0";
   EXPECT_GT(surface_m(-2e-3, 0, true), -1e-3) << "free air";
 }
 
