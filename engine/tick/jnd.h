@@ -1,6 +1,6 @@
-// The just noticeable difference (JND) of a force: the smallest error that a hand can perceive. Pure.
-//   JND(F) = offset + weber_fraction |F|
-// Source: Hoever & Harders (2009), section 4.1, the conservative line below all measured points: 0.065 N + 6.33 %.
+// One JND is the difference that people notice in three of four trials: JND(F) = offset + weber_fraction |F|. Pure.
+// The default is the line of Hoever & Harders (2009), section 4.1, below their measured points: 0.065 N + 6.33 %.
+// Pages say it in the words of kJndDefinition (scenes/evaluation/model_errors.h).
 #pragma once
 
 #include <cmath>
@@ -12,7 +12,7 @@ struct JndLine {
 
   double at(double force_N) const noexcept { return offset_N + weber_fraction * std::abs(force_N); }
 
-  // |model - measured| / JND(measured); an error of 1 or less cannot be perceived.
+  // |model - measured| / JND(measured).
   double error_over_jnd(double model_N, double measured_N) const noexcept {
     return std::abs(model_N - measured_N) / at(measured_N);
   }

@@ -19,7 +19,7 @@
 #include "models/model/file/model_io.h"
 #include "models/model/fitted_model.h"
 #include "scenes/cli/verbs.h"
-#include "scenes/evaluation/error_figures.h"
+#include "scenes/evaluation/model_errors.h"
 #include "scenes/scene/scene.h"
 
 namespace palpate::cli {

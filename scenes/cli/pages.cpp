@@ -7,6 +7,7 @@
 
 #include "engine/base/text.h"
 #include "engine/base/whole_file.h"
+#include "engine/tick/tool_sample.h"
 #include "scenes/cli/verbs.h"
 #include "scenes/hard/hard_table.h"
 #include "scenes/report/paper.h"
@@ -19,6 +20,7 @@ namespace {
 struct Arguments {
   std::vector<std::string> train, test;
   std::string scene = "silicone_block";
+  double budget_percent = 5.0;  // of the period of a tick
   bool json = false;
   ReportRequest request;
 };
@@ -34,6 +36,8 @@ std::string command_line(const Arguments& arguments) {
   add("--test", arguments.test);
   add("--scene", {arguments.scene});
   if (arguments.request.quick) text += " --quick";
+  if (arguments.budget_percent != Arguments{}.budget_percent)
+    text += " --budget " + general(arguments.budget_percent, 6);
   add("--out", {arguments.request.out});
   return text;
 }
@@ -57,6 +61,8 @@ Status run_report(Arguments arguments) {
   if (!checked) return checked.error();
   ReportRequest& request = arguments.request;
   request.scene = *scene;
+  request.test_files = arguments.test;
+  request.budget_ns = 1e9 * kHapticTick_s * 0.01 * arguments.budget_percent;
   request.command_line = command_line(arguments);
   request.version = "palpate " PALPATE_VERSION;
   for (std::size_t i = 0; i < checked->size(); ++i)
@@ -66,8 +72,10 @@ Status run_report(Arguments arguments) {
   if (!answer) return answer.error();
   if (arguments.json) return print_file(request.out + "/report.json");
   print_table(answer->table, true);
-  std::printf("\n%s\n\nspeed against error  %s/figures/speed_error.png, .svg\nreport               %s/index.html\n",
-              answer->sentence.c_str(), request.out.c_str(), request.out.c_str());
+  std::printf("\n%s\n", answer->sentence.c_str());
+  for (const std::string& line : answer->details) std::printf("  %s\n", line.c_str());
+  std::printf("\nspeed against error  %s/figures/speed_error.png, .svg\nreport               %s/index.html\n",
+              request.out.c_str(), request.out.c_str());
   return {};
 }
 
@@ -138,6 +146,10 @@ void add_report(CLI::App& app, Verbs& verbs) {
   verb->add_option("--scene", arguments->scene, "Scene that gives the features and the JND line")
       ->capture_default_str();
   verb->add_option("--out", arguments->request.out, "Folder to create")->required()->type_name("DIR");
+  verb->add_option("--budget", arguments->budget_percent,
+                   "Longest tick of a model that is recommended, in percent of the period of 1 ms")
+      ->check(CLI::Range(1e-6, 100.0))
+      ->capture_default_str();
   verb->add_flag("--quick", arguments->request.quick, "Fit the paper's methods and the default only, with 100 centres");
   verb->add_flag("--json", arguments->json, "Print report.json, which is also in the folder");
   verb->add_flag("--force", arguments->request.force, "Replace an earlier report");

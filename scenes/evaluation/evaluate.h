@@ -1,9 +1,17 @@
-// Evaluates models on recordings through the tick of the live loop, kMaxModels at a time. Errors are computed twice:
-// with the positions as recorded, and with a surface offset subtracted from every position of a recording. The offset
-// is estimated for each model (surface_search.h), or once for all. With the offset, contact is determined anew.
+// Evaluates models on recordings through the tick of the live loop, kMaxModels at a time, and measures their time.
+// Errors are computed twice: with the positions as recorded, and with a surface offset subtracted from every position
+// of a recording. The offset is estimated for each model, or once for all. With the offset, contact is determined anew.
+//
+// Computation time, measured on samples in contact:
+//   tick         motion estimate, features and force of this one model
+//   evaluation   the force alone, from features that are computed before
+// There are kTimingRounds rounds, and each round times every model once, so that a slow phase of the machine
+// affects all models. The true median lies between the least and the greatest of n rounds with probability
+// 1 - 2^(1 - n): 97 % for six.
 // Thread guarantee: slow side; one thread per call.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <limits>
@@ -15,13 +23,52 @@
 #include "engine/base/parallel.h"
 #include "engine/base/result.h"
 #include "engine/tick/replay.h"
+#include "models/samples/selection.h"
+#include "models/samples/samples.h"
 #include "scenes/evaluation/model_errors.h"
-#include "scenes/evaluation/model_timing.h"
-#include "scenes/evaluation/surface_search.h"
 
 namespace palpate {
 
 using ModelPointer = std::shared_ptr<const ForceModel>;
+
+inline constexpr int kTimingRounds = 6;
+
+// A round takes the mean time of a step in each block of 64 steps, and of these means median and 99th percentile.
+struct Timing {
+  double median_ns = 0.0;  // median of the rounds' medians
+  double low_ns = 0.0;     // the least of these medians
+  double high_ns = 0.0;    // the greatest of these medians
+  double p99_ns = 0.0;     // median of the rounds' 99th percentiles
+};
+
+struct ModelTiming {
+  Timing tick;
+  Timing evaluation;
+  bool measured = false;  // false: there were no samples
+};
+
+// Largest number of samples of one recording that are timed. All are in contact; in air no model is evaluated.
+inline constexpr std::size_t kTimedSamples = 4096;
+
+// Samples of one recording, with its sensor.
+struct TimedSamples {
+  SensorSpec sensor;
+  std::vector<ToolSample> samples;
+};
+
+// Returns one result per model, over these samples; without any stretch, over its own ProbingStrokes. Each evaluation
+// depends on the last force, so that the processor cannot overlap them.
+std::vector<ModelTiming> time_models(const std::vector<ModelPointer>& models,
+                                     const std::vector<TimedSamples>& stretches);
+
+// Estimates the surface of a test recording for given models: the shift of the positions, over all overlaps of
+// recording and model, that minimises the error of the models' forces (selection.h). Errors are in JND with a
+// Huber loss beyond 1; outside the surface a model's force is 0, as in the tick. A shift counts as 0 within two
+// standard errors of 0, and is not identified if a force offset explains the data as well.
+// `rows`: a whole recording in time order, thinned. The costs of several models are added. `at`: to be subtracted from
+// position_m so that 0 is the models' surface, m. Without models or rows it is not identified.
+OffsetEstimate locate_surface(const std::vector<Sample>& rows, const std::vector<ModelPointer>& models,
+                              const JndLine& jnd);
 
 struct EvaluatedModel {
   ModelPointer model;

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "engine/base/random_stream.h"
+#include "engine/base/text.h"
 
 namespace palpate {
 namespace {
@@ -56,32 +57,38 @@ double ratio_standard_error(const std::vector<double>& numerators, const std::ve
   return std::sqrt(count / (count - 1.0) * squares) / whole;
 }
 
-// The 99 % error of every draw of units. `bounds`: the first sample of each unit in `ratios`, then their number.
-std::vector<float> resample(const std::vector<float>& ratios, const std::vector<std::size_t>& bounds) {
-  const std::size_t units = bounds.size() - 1;
-  if (units < kLeastUnits) return {};
+// The figures of every draw of units. `bounds`: the first sample of each unit in `ratios`, then their number.
+Draws resample(const std::vector<float>& ratios, const std::vector<std::size_t>& bounds) {
+  Draws draws;
+  draws.units = bounds.size() - 1;
+  if (draws.units < kLeastUnits) return draws;
   std::vector<std::pair<float, std::size_t>> samples;  // error and unit, in descending order
-  for (std::size_t unit = 0; unit < units; ++unit) {
-    for (std::size_t i = bounds[unit]; i < bounds[unit + 1]; ++i) samples.emplace_back(ratios[i], unit);
+  std::vector<std::size_t> within(draws.units, 0);
+  for (std::size_t unit = 0; unit < draws.units; ++unit) {
+    for (std::size_t i = bounds[unit]; i < bounds[unit + 1]; ++i) {
+      samples.emplace_back(ratios[i], unit);
+      if (ratios[i] <= 1.0F) ++within[unit];
+    }
   }
   std::ranges::sort(samples, std::ranges::greater{}, &std::pair<float, std::size_t>::first);
   RandomStream random(1, 0);
-  std::vector<float> errors;
   for (std::size_t draw = 0; draw < kResamples; ++draw) {
-    std::vector<std::size_t> times(units, 0);
-    std::size_t drawn = 0;  // samples
-    for (std::size_t k = 0; k < units; ++k) {
-      const auto unit = static_cast<std::size_t>(random.index(units));
+    std::vector<std::size_t> times(draws.units, 0);
+    std::size_t drawn = 0, drawn_within = 0;  // samples
+    for (std::size_t k = 0; k < draws.units; ++k) {
+      const auto unit = static_cast<std::size_t>(random.index(draws.units));
       ++times[unit];
       drawn += bounds[unit + 1] - bounds[unit];
+      drawn_within += within[unit];
     }
     const std::size_t beyond = drawn / 100;  // number of samples that may exceed the 99 % error
     std::size_t count = 0;
     auto one = samples.begin();
     while ((count += times[one->second]) <= beyond) ++one;
-    errors.push_back(one->first);
+    draws.p99.push_back(one->first);
+    draws.within.push_back(static_cast<float>(static_cast<double>(drawn_within) / static_cast<double>(drawn)));
   }
-  return errors;
+  return draws;
 }
 
 // The expanded percentile interval of a bootstrap with this number of units.
@@ -95,9 +102,82 @@ Interval interval_95(std::vector<float> resampled, std::size_t units) {
   return {static_cast<double>(resampled[rank]), static_cast<double>(resampled[resampled.size() - 1 - rank])};
 }
 
+// The interval of the difference of a figure, draw by draw.
+Interval difference_95(const Draws& one, const Draws& other, std::vector<float> Draws::*figure) {
+  std::vector<float> differences;
+  for (std::size_t i = 0; i < std::min((one.*figure).size(), (other.*figure).size()); ++i)
+    differences.push_back((one.*figure)[i] - (other.*figure)[i]);
+  return interval_95(std::move(differences), one.units);
+}
+
+// Whether `other` is worse than `best` in one figure by a difference that counts. `sign`: 1 where larger is worse.
+bool is_worse(const Candidate& other, const Candidate& best, double Candidate::*figure,
+              std::vector<float> Draws::*drawn, double sign, double least) {
+  if (sign * (other.*figure - best.*figure) < least) return false;
+  if (other.strokes == nullptr || best.strokes == nullptr) return true;
+  const Interval interval = difference_95(*other.strokes, *best.strokes, drawn);
+  return !interval.known() || (sign > 0.0 ? interval.low > 0.0 : interval.high < 0.0);
+}
+
 }  // namespace
 
-Interval UnitErrors::p99_interval() const { return interval_95(resampled_p99, units()); }
+std::size_t force_bin(double force_N, const JndLine& jnd) noexcept {
+  const double over_offset = std::max(0.0, force_N) / jnd.offset_N;
+  const double jnds =
+      jnd.weber_fraction > 0.0 ? std::log1p(jnd.weber_fraction * over_offset) / jnd.weber_fraction : over_offset;
+  return static_cast<std::size_t>(std::min(jnds / kBinWidth_jnd, static_cast<double>(kMaximumForceBins - 1)));
+}
+
+double force_bin_begin_N(std::size_t index, const JndLine& jnd) noexcept {
+  const double jnds = kBinWidth_jnd * static_cast<double>(index);
+  return jnd.offset_N * (jnd.weber_fraction > 0.0 ? std::expm1(jnd.weber_fraction * jnds) / jnd.weber_fraction : jnds);
+}
+
+void Moments::add(double value) {
+  const double change = value - mean_;
+  mean_ += change / static_cast<double>(++count_);
+  squares_ += change * (value - mean_);
+  largest_ = std::max(largest_, value);
+}
+
+double Moments::deviation() const noexcept {
+  return count_ > 0 ? std::sqrt(squares_ / static_cast<double>(count_)) : 0.0;
+}
+
+void ErrorFigures::add(double model_N, double reference_N, bool out_of_domain, const JndLine& jnd) {
+  const double error_N = std::abs(model_N - reference_N);
+  const double ratio = jnd.error_over_jnd(model_N, reference_N);
+  ++sum_.samples;
+  if (ratio <= 1.0) ++within_;
+  if (out_of_domain) ++sum_.out_of_domain_samples;
+  squares_N2_ += error_N * error_N;
+  ratios_ += ratio;
+  sum_.max_error_N = std::max(sum_.max_error_N, error_N);
+  sum_.max_error_over_jnd = std::max(sum_.max_error_over_jnd, ratio);
+
+  const std::size_t index = force_bin(reference_N, jnd);
+  if (sum_.bins.size() <= index) sum_.bins.resize(index + 1);
+  ForceBin& bin = sum_.bins[index];
+  bin.force_N.add(reference_N);
+  bin.error_N.add(error_N);
+  bin.over_jnd.add(ratio);
+  if (reference_N != 0.0) bin.relative.add(error_N / std::abs(reference_N));
+}
+
+ErrorSummary ErrorFigures::summary(const JndLine& jnd) const {
+  ErrorSummary summary = sum_;
+  summary.rms_error_N = std::sqrt(share(squares_N2_));
+  summary.within_jnd = within_jnd();
+  for (std::size_t i = 0; i < summary.bins.size(); ++i) {
+    ForceBin& bin = summary.bins[i];
+    bin.force_from_N = force_bin_begin_N(i, jnd);
+    bin.force_to_N = force_bin_begin_N(i + 1, jnd);
+    bin.jnd_N = jnd.at(0.5 * (bin.force_from_N + bin.force_to_N));
+  }
+  return summary;
+}
+
+Interval UnitErrors::p99_interval() const { return interval_95(drawn_units.p99, units()); }
 
 double UnitErrors::within_at_least() const {
   if (!has_intervals()) return kUnknown;
@@ -107,10 +187,8 @@ double UnitErrors::within_at_least() const {
 }
 
 PairedDifference paired_difference(const UnitErrors& one, const UnitErrors& other) {
-  std::vector<float> differences;
-  for (std::size_t i = 0; i < std::min(one.resampled_p99.size(), other.resampled_p99.size()); ++i)
-    differences.push_back(one.resampled_p99[i] - other.resampled_p99[i]);
-  return {one.p99_error_over_jnd - other.p99_error_over_jnd, interval_95(std::move(differences), one.units())};
+  return {one.p99_error_over_jnd - other.p99_error_over_jnd,
+          difference_95(one.drawn_strokes, other.drawn_strokes, &Draws::p99)};
 }
 
 bool StrokeCounter::begins_stroke(double time_s, bool in_contact) {
@@ -151,9 +229,11 @@ UnitErrors ModelErrors::unit_errors() const {
     bounds.erase(std::unique(bounds.begin(), bounds.end()), bounds.end());
     return bounds;
   };
-  std::vector<std::size_t> bounds = bounds_of(recordings_);
-  unit_errors.units_are_recordings = bounds.size() > 2;
-  if (!unit_errors.units_are_recordings) bounds = bounds_of(strokes_);
+  std::vector<std::size_t> bounds = bounds_of(strokes_);
+  unit_errors.drawn_strokes = resample(ratios_, bounds);
+  const std::vector<std::size_t> recordings = bounds_of(recordings_);
+  unit_errors.units_are_recordings = recordings.size() > 2;
+  if (unit_errors.units_are_recordings) bounds = recordings;
   for (std::size_t i = 0; i + 1 < bounds.size(); ++i) {
     const auto begin = ratios_.begin() + static_cast<std::ptrdiff_t>(bounds[i]);
     const auto end = ratios_.begin() + static_cast<std::ptrdiff_t>(bounds[i + 1]);
@@ -162,7 +242,7 @@ UnitErrors ModelErrors::unit_errors() const {
     unit_errors.unit_within.push_back(static_cast<double>(within));
     unit_errors.units_above_jnd += within < end - begin ? 1 : 0;
   }
-  unit_errors.resampled_p99 = resample(ratios_, bounds);
+  unit_errors.drawn_units = unit_errors.units_are_recordings ? resample(ratios_, bounds) : unit_errors.drawn_strokes;
   return unit_errors;
 }
 
@@ -173,6 +253,54 @@ BoundFigures ModelErrors::bounds() const {
   const double median_N = ranked(bounds_N_, middle);
   return {static_cast<double>(covered_) / static_cast<double>(bounds_N_.size()), median_N,
           median_N <= largest_force_N_ ? ranked(bounds_over_jnd_, middle) : kUnknown};
+}
+
+Ranking rank(const std::vector<Candidate>& candidates, double budget_ns) {
+  const bool all = std::ranges::none_of(candidates, [&](const Candidate& one) { return one.tick_ns <= budget_ns; });
+  std::vector<std::size_t> eligible, many;
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    if (!all && candidates[i].tick_ns > budget_ns) continue;
+    eligible.push_back(i);
+    if (candidates[i].within_jnd >= kManyWithin) many.push_back(i);
+  }
+  const auto within = [&](std::size_t i) { return candidates[i].within_jnd; };
+  const auto p99 = [&](std::size_t i) { return candidates[i].p99_error_over_jnd; };
+  const auto tick_ns = [&](std::size_t i) { return candidates[i].tick_ns; };
+  const bool several = many.size() > 1;
+  Ranking ranking;
+  ranking.best = several ? *std::ranges::min_element(many, {}, p99) : *std::ranges::max_element(eligible, {}, within);
+  const Candidate& best = candidates[ranking.best];
+  ranking.as_good.resize(candidates.size());
+  std::vector<std::size_t> as_good, below;
+  for (const std::size_t i : eligible) {
+    const Candidate& one = candidates[i];
+    const bool by_share = !several || one.within_jnd < kManyWithin;
+    const bool worse =
+        (by_share && is_worse(one, best, &Candidate::within_jnd, &Draws::within, -1.0, kLeastShare)) ||
+        (several && is_worse(one, best, &Candidate::p99_error_over_jnd, &Draws::p99, 1.0, kLeastDifference_jnd));
+    ranking.as_good[i] = !worse;
+    if (!worse) as_good.push_back(i);
+    if (one.p99_error_over_jnd <= 1.0) below.push_back(i);
+  }
+  ranking.recommended = *std::ranges::min_element(as_good, {}, tick_ns);
+  if (!below.empty()) ranking.fastest_below_jnd = *std::ranges::min_element(below, {}, tick_ns);
+  return ranking;
+}
+
+std::string share_text(double share) {
+  const int decimals = share >= kManyWithin && share < 1.0 ? 1 : 0;
+  const double unit = decimals == 1 ? 1000.0 : 100.0;
+  return fixed(std::floor(unit * share) * 100.0 / unit, decimals) + " %";
+}
+
+std::string tick_text(double tick_ns) {
+  const double tick_us = 1e-3 * tick_ns;
+  return (tick_us < 99.5 ? general(tick_us, 2) : fixed(tick_us, 0)) + " us";
+}
+
+std::string recommendation(const std::string& name, const Candidate& of) {
+  return (of.within_jnd >= kGoodShare ? "Use " : "No model is good enough; the best is ") + name + ": " +
+         share_text(of.within_jnd) + " of the test is within one JND, a tick takes " + tick_text(of.tick_ns) + ".";
 }
 
 }  // namespace palpate

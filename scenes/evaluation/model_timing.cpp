@@ -1,4 +1,4 @@
-#include "scenes/evaluation/model_timing.h"
+#include "scenes/evaluation/evaluate.h"
 
 #include <algorithm>
 #include <array>
@@ -10,7 +10,6 @@ namespace palpate {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-using ModelPointer = std::shared_ptr<const ForceModel>;
 constexpr std::size_t kBlock = 64;
 
 // Appends the mean time of `step(index)` over every block of indices below `count`.

@@ -1,4 +1,4 @@
-#include "scenes/evaluation/surface_search.h"
+#include "scenes/evaluation/evaluate.h"
 
 #include <algorithm>
 #include <cmath>
@@ -38,8 +38,8 @@ void add_costs(const ForceErrors& errors, double force_offset_N, const std::vect
 
 }  // namespace
 
-OffsetEstimate locate_surface(const std::vector<Sample>& rows,
-                              const std::vector<std::shared_ptr<const ForceModel>>& models, const JndLine& jnd) {
+OffsetEstimate locate_surface(const std::vector<Sample>& rows, const std::vector<ModelPointer>& models,
+                              const JndLine& jnd) {
   if (rows.empty() || models.empty()) return {};
   const auto [low_m, high_m] = position_range_m(rows);
   // The range reaches from a recording that is all in air to one that begins at the greatest depth of this one.

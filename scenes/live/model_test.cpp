@@ -60,7 +60,7 @@ ModelTest::Outcome ModelTest::run(const Models& untested, const Models& timed) {
     if (!result) return outcome;
     const auto errors_of = [](const ModelErrors& errors) -> Errors {
       const UnitErrors of_units = errors.unit_errors();
-      return {of_units, of_units.p99_interval()};
+      return {of_units, of_units.p99_interval(), of_units.drawn_strokes};
     };
     for (std::size_t i = 0; i < untested.size(); ++i) {
       const auto& one = result->models[i];

@@ -19,8 +19,7 @@
 #include "engine/recording/recording.h"
 #include "engine/tick/jnd.h"
 #include "scenes/evaluation/model_errors.h"
-#include "scenes/evaluation/model_timing.h"
-#include "scenes/evaluation/surface_search.h"
+#include "scenes/evaluation/evaluate.h"
 
 namespace palpate {
 
@@ -48,6 +47,7 @@ class ModelTest {
 
   struct Errors : ErrorSummary {
     Interval p99_interval{kUnknown, kUnknown};
+    Draws strokes;  // for the choice of the best model
   };
   struct Tested {
     std::shared_ptr<const ForceModel> model;

@@ -5,12 +5,14 @@
 #include <tuple>
 
 #include "engine/base/text.h"
-#include "scenes/evaluation/ranking.h"
+#include "scenes/evaluation/model_errors.h"
 
 namespace palpate {
 namespace {
 
 constexpr double kTick_ns = 1e6;
+// Medians of six rounds of the same model differ by a few percent.
+constexpr double kEqualTime = 0.1;
 
 bool is_noticeable(const JudgedModel& one) { return one.p99_error_over_jnd > 1.0; }
 
@@ -43,7 +45,8 @@ std::string time_words(const Timing& one, const Timing& other) {
 
 Verdict judge(const std::vector<JudgedModel>& judged, const std::string& reference) {
   std::vector<Candidate> candidates;
-  for (const JudgedModel& one : judged) candidates.push_back({one.method, one.p99_error_over_jnd, one.tick.median_ns});
+  for (const JudgedModel& one : judged)
+    candidates.push_back({one.within_jnd, one.p99_error_over_jnd, one.tick.median_ns, one.strokes});
   const JudgedModel& chosen = judged[rank(candidates).recommended];
   Verdict verdict;
   verdict.chosen = chosen.slot;

@@ -1,6 +1,6 @@
-// The verdict of a session: the recommended model (scenes/evaluation/ranking.h) in one sentence with its rival: the
-// most accurate model of the other kind, of this program or of the paper (2009), else the most accurate other model.
-// Thread guarantee: pure functions.
+// The verdict of a session: the recommended model (scenes/evaluation/model_errors.h) in one sentence with its rival:
+// the most accurate model of the other kind, of this program or of the paper (2009), else the most accurate other
+// model. Thread guarantee: pure functions.
 #pragma once
 
 #include <cstddef>
@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "scenes/evaluation/model_timing.h"
+#include "scenes/evaluation/evaluate.h"
 
 namespace palpate {
 
@@ -16,10 +16,10 @@ namespace palpate {
 struct JudgedModel {
   std::size_t slot = 0;
   std::string name;
-  std::string method;  // family of its plan
   bool paper = false;  // a method on the measured force
-  double p99_error_over_jnd = 0.0;
+  double within_jnd = 0.0, p99_error_over_jnd = 0.0;
   Timing tick;
+  const Draws* strokes = nullptr;  // of the test (Candidate)
 };
 
 struct Verdict {
@@ -32,8 +32,8 @@ struct Verdict {
 // `judged`: at least one. `reference`: name of the model that is the reference; empty: the true force is known.
 Verdict judge(const std::vector<JudgedModel>& judged, const std::string& reference);
 
-// "in 0.6 of the time (240 against 390 ns)"; where the medians or the least times differ by at most kEqualTime
-// (scenes/evaluation/ranking.h), "as fast".
+// "in 0.6 of the time (240 against 390 ns)"; where the medians or the least times differ by at most a tenth,
+// "as fast".
 std::string time_words(const Timing& one, const Timing& other);
 // The share of the period of 1 ms that a tick takes, as "0.04 %".
 std::string tick_share(double tick_ns);

@@ -1,7 +1,7 @@
 #include "scenes/report/measure.h"
 
 #include <algorithm>
-#include <limits>
+#include <type_traits>
 #include <utility>
 
 #include "models/correction/methods.h"
@@ -51,11 +51,13 @@ class Measurement {
     for (ModelResult& one : models_) finish(one);
     models_.front().errors = evaluation_.no_force.unit_errors();
     models_.front().moved = evaluation_.no_force.summary();
-    data_.floor = noise_floor(tested_, data_.scene.jnd);
+    std::vector<const PreparedRecording*> tested;
+    for (const TestedRecording& one : data_.tested) tested.push_back(one.recording.get());
+    data_.floor = noise_floor(tested, data_.scene.jnd);
     merge_seeds();
     merge_equal();
     time_all();
-    data_.choice = choose(models_);
+    data_.choice = choose(models_, data_.budget_ns);
     find_worst();
     return progress_.next(0.0).may_continue(1.0) ? Status{} : Status{interrupted()};
   }
@@ -192,8 +194,7 @@ class Measurement {
     auto evaluated = evaluate(tested->recording, models, request, std::move(evaluation_));
     if (!evaluated) return evaluated.error();
     evaluation_ = std::move(*evaluated);
-    data_.tested.push_back({tested->recording.name, evaluation_.models.front().surfaces.back().at});
-    tested_.push_back(tested.get());
+    data_.tested.push_back({tested, evaluation_.models.front().surfaces.back()});
     return {};
   }
 
@@ -210,22 +211,44 @@ class Measurement {
     }
   }
 
-  // Keeps of each model that was fitted with several seeds the one with the median 99 % error.
+  // Merges the models of one plan with several seeds: the median of each figure by itself, also draw by draw. Model,
+  // time and bins are those of the seed with the median 99 % error.
   void merge_seeds() {
     const auto p99 = [](const ModelResult& one) { return one.errors.p99_error_over_jnd; };
-    const auto within = [](const ModelResult& one) { return one.errors.within_jnd; };
     std::vector<ModelResult> kept;
     for (auto first = models_.begin(); first != models_.end();) {
       const auto last = std::find_if(first + 1, models_.end(),
                                      [](const ModelResult& one) { return !one.plan || one.plan->seed == 1; });
-      const auto [fewest, most] = std::minmax_element(
-          first, last, [&](const ModelResult& a, const ModelResult& b) { return within(a) < within(b); });
-      const Interval shares{within(*fewest), within(*most)};
       std::ranges::stable_sort(first, last, {}, p99);
-      ModelResult& median = *(first + (last - first) / 2);
+      ModelResult median = *(first + (last - first) / 2);
       median.seeds = static_cast<std::uint64_t>(last - first);
-      median.within_range = shares;
-      median.p99_range = {p99(*first), p99(*(last - 1))};
+      // `of`: a reference to one figure of a model. Returns its least and greatest value.
+      const auto take_median = [&](const auto& of) {
+        std::vector<double> values;
+        for (auto one = first; one != last; ++one) values.push_back(static_cast<double>(of(*one)));
+        std::ranges::sort(values);
+        auto& to = of(median);
+        to = static_cast<std::remove_reference_t<decltype(to)>>(values[values.size() / 2]);
+        return Interval{values.front(), values.back()};
+      };
+      median.within_range = take_median([](ModelResult& one) -> double& { return one.errors.within_jnd; });
+      median.p99_range = take_median([](ModelResult& one) -> double& { return one.errors.p99_error_over_jnd; });
+      take_median([](ModelResult& one) -> std::uint64_t& { return one.errors.out_of_domain_samples; });
+      take_median([](ModelResult& one) -> std::uint64_t& { return one.errors.units_above_jnd; });
+      for (const auto figure :
+           {&ErrorSummary::rms_error_N, &ErrorSummary::max_error_N, &ErrorSummary::max_error_over_jnd})
+        take_median([&](ModelResult& one) -> double& { return one.errors.*figure; });
+      for (const auto figure :
+           {&ErrorSummary::within_jnd, &ErrorSummary::p99_error_over_jnd, &ErrorSummary::rms_error_N})
+        take_median([&](ModelResult& one) -> double& { return one.moved.*figure; });
+      for (const auto bound : {&ModelResult::bound, &ModelResult::bound_moved})
+        take_median([&](ModelResult& one) -> double& { return (one.*bound).coverage; });
+      for (std::size_t i = 0; i < median.errors.unit_within.size(); ++i)
+        take_median([&](ModelResult& one) -> double& { return one.errors.unit_within[i]; });
+      for (const auto draws : {&UnitErrors::drawn_units, &UnitErrors::drawn_strokes})
+        for (const auto figure : {&Draws::within, &Draws::p99})
+          for (std::size_t i = 0; i < (median.errors.*draws.*figure).size(); ++i)
+            take_median([&](ModelResult& one) -> float& { return (one.errors.*draws.*figure)[i]; });
       kept.push_back(std::move(median));
       first = last;
     }
@@ -279,8 +302,7 @@ class Measurement {
   std::vector<ModelResult>& models_;
   Progress progress_;
   std::vector<Fitted> fitted_;  // of the current fold
-  std::vector<const PreparedRecording*> tested_;
-  Evaluation evaluation_;  // of all models but the first on all test recordings
+  Evaluation evaluation_;       // of all models but the first on all test recordings
 };
 
 }  // namespace
@@ -321,9 +343,11 @@ WorstStretch worst_stretch(const Recording& recording, const std::vector<ModelPo
   return worst;
 }
 
-Result<ReportData> measure(const RecordingSet& recordings, const Scene& scene, bool quick, const FitControl& control) {
+Result<ReportData> measure(const RecordingSet& recordings, const Scene& scene, bool quick, double budget_ns,
+                           const FitControl& control) {
   ReportData data;
   data.scene = scene;
+  data.budget_ns = budget_ns;
   data.recordings = recordings;
   if (const Status status = Measurement(data, quick, control).run(); !status) return status.error();
   return data;
@@ -334,15 +358,15 @@ bool is_main(const ModelPlan& plan) {
          (plan.base == Base::force ? plan.method != &kDirectMethod : plan.method == &kTrendMethod);
 }
 
-Ranking choose(const std::vector<ModelResult>& models) {
-  constexpr double kNever = std::numeric_limits<double>::infinity();
+Ranking choose(const std::vector<ModelResult>& models, double budget_ns) {
   std::vector<Candidate> candidates;
-  for (const ModelResult& one : models) {
-    candidates.push_back(one.model
-                             ? Candidate{family_name(*one.plan), one.errors.p99_error_over_jnd, one.time.tick.median_ns}
-                             : Candidate{"", kNever, kNever});
-  }
-  return rank(candidates);
+  for (std::size_t i = 1; i < models.size(); ++i) candidates.push_back(models[i].candidate());
+  Ranking ranking = rank(candidates, budget_ns);
+  ++ranking.best;
+  ++ranking.recommended;
+  ranking.as_good.insert(ranking.as_good.begin(), false);
+  if (ranking.fastest_below_jnd) ++*ranking.fastest_below_jnd;
+  return ranking;
 }
 
 std::vector<std::size_t> headline_models(const ReportData& data) {

@@ -10,7 +10,7 @@
 #include "models/fit/fit.h"
 #include "models/model/fitted_model.h"
 #include "scenes/evaluation/evaluate.h"
-#include "scenes/evaluation/ranking.h"
+#include "scenes/evaluation/model_errors.h"
 #include "scenes/plot/compared_forces.h"
 #include "scenes/report/recordings.h"
 #include "scenes/scene/scene.h"
@@ -44,7 +44,7 @@ inline constexpr int kSizes[] = {10, 20, 50, 100, 200};
 using ErrorBySize = std::vector<std::pair<int, double>>;  // number of centres, cross-validated error over the JND
 
 // The results of a planned model over all folds. The errors of all models are over the same samples. Of a method that
-// draws random numbers they are those of the seed with the median 99 % error.
+// draws random numbers each figure is the median over the seeds.
 struct ModelResult {
   std::string name = "no force";
   std::optional<ModelPlan> plan;  // none: 0 N
@@ -62,12 +62,23 @@ struct ModelResult {
   std::vector<ModelPointer> fits;            // of each fold; empty: no force
   std::size_t place = 0;                     // in the evaluation
   std::vector<std::string> same;             // names of further planned models with the same forces
+
+  Candidate candidate() const {
+    return {errors.within_jnd, errors.p99_error_over_jnd, time.tick.median_ns, &errors.drawn_strokes};
+  }
+};
+
+// A test recording, and the estimate of its surface for the trend models.
+struct TestedRecording {
+  PreparedRecordingPointer recording;
+  OffsetEstimate surface;
 };
 
 struct ReportData {
   Scene scene;
+  double budget_ns = kBudget_ns;  // the longest tick of a candidate
   RecordingSet recordings;
-  std::vector<RecordingOffset> tested;    // every test recording, and its estimated surface offset; 0: none
+  std::vector<TestedRecording> tested;
   NoiseFloor floor;                       // of all test recordings together
   std::vector<ModelResult> models;        // the first is always 0 N; no two have the same forces
   Ranking choice;                         // of `models`
@@ -83,10 +94,11 @@ struct ReportData {
 // Fits every planned model once per fold and pools its errors over the folds. `quick`: the main models with 100
 // centres. All results but times are deterministic. Errors: those of the recordings and the fits, with the recordings'
 // names; interrupted.
-Result<ReportData> measure(const RecordingSet& recordings, const Scene& scene, bool quick, const FitControl& control);
+Result<ReportData> measure(const RecordingSet& recordings, const Scene& scene, bool quick, double budget_ns,
+                           const FitControl& control);
 
 // Every model but no force is a candidate.
-Ranking choose(const std::vector<ModelResult>& models);
+Ranking choose(const std::vector<ModelResult>& models, double budget_ns = kBudget_ns);
 // The models of the page's first table: no force, the main models, the best and the recommended one.
 std::vector<std::size_t> headline_models(const ReportData& data);
 

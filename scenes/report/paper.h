@@ -18,8 +18,8 @@
 #include "engine/base/parallel.h"
 #include "engine/base/result.h"
 #include "engine/tick/jnd.h"
-#include "scenes/evaluation/error_figures.h"
-#include "scenes/evaluation/model_timing.h"
+#include "scenes/evaluation/evaluate.h"
+#include "scenes/evaluation/model_errors.h"
 #include "scenes/study/study_analysis.h"
 
 namespace palpate {

@@ -14,7 +14,7 @@
 
 #include "engine/base/parallel.h"
 #include "engine/base/result.h"
-#include "scenes/evaluation/error_figures.h"
+#include "scenes/evaluation/model_errors.h"
 #include "scenes/plot/draw.h"
 
 namespace palpate {

@@ -5,12 +5,15 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <map>
+#include <optional>
 #include <thread>
 
 #include "engine/base/text.h"
-#include "scenes/evaluation/ranking.h"
+#include "models/model/file/model_io.h"
+#include "scenes/evaluation/model_errors.h"
 #include "scenes/report/contents.h"
 
 namespace palpate {
@@ -36,73 +39,118 @@ constexpr const char* kCompiler = "clang " __clang_version__;
 constexpr const char* kCompiler = "g++ " __VERSION__;
 #endif
 
-// No model is recommended if less than this share of the test samples is within the JND.
-constexpr double kGoodShare = 0.9;
-// The answer mentions the surface only if moving it changes the share within the JND by more.
-constexpr double kShareThatMatters = 0.005;
-
+// Another zero is named where moving the surface raises the share within the JND by more than this.
+constexpr double kShareThatMatters = 0.05;
 constexpr double kStudiedUpTo_N = 2.5;  // Hoever & Harders (2009), section 4.1
 
 // Two decimals, rounded down: 99.996 % is "99.99 %".
 std::string percent(double share) { return share >= 1.0 ? "100 %" : fixed(std::floor(1e4 * share) / 100.0, 2) + " %"; }
 
-std::string seeds_text(const ModelResult& model) {
-  return model.seeds > 1 ? " (the median of " + std::to_string(model.seeds) + " seeds)" : "";
-}
+// By how much a test recording differs from the zeros of the training, as far as the data identify it; 0: not at all.
+struct OtherZero {
+  std::string recording;
+  double force_N = 0.0, surface_m = 0.0;  // to be subtracted
+};
 
-std::string interval_text(const Interval& interval) {
-  if (!interval.known()) return {};
-  return " (95 %: " + three_digits(interval.low) + " to " + three_digits(interval.high) + ")";
-}
-
-// Says by how much the model with the lowest 99 % error is better, and how much longer it takes.
-std::string best_text(const ModelResult& best, const ModelResult& use) {
-  const PairedDifference difference = paired_difference(use.errors, best.errors);
-  return "; the lowest 99 % error, " + three_digits(difference.p99) + " JND less" + interval_text(difference.interval) +
-         ", is that of " + best.name + ", which takes " +
-         three_digits(best.time.tick.median_ns / use.time.tick.median_ns) + " times as long";
-}
-
-// Names the test recording whose surface is farthest from the models'.
-std::string surface_text(const ReportData& data, const ModelResult& model) {
-  if (model.moved.within_jnd - model.errors.within_jnd < kShareThatMatters) return {};
-  const RecordingOffset& surface =
-      *std::ranges::max_element(data.tested, {}, [](const RecordingOffset& one) { return std::abs(one.offset_m); });
-  return " The surface of " + surface.name + " is at " + three_digits(1e3 * surface.offset_m) +
-         " mm for these models; with it moved, which uses the forces of the test, " + percent(model.moved.within_jnd) +
-         " of the test is within the JND.";
-}
-
-// The answer of a report, which page, report.json and terminal show.
-std::string answer(const ReportData& data) {
+// The test recording whose surface is farthest from the models', where that decides the figures. The force is that of
+// its own free air, or the offset that explains the recording as well as the surface does.
+std::optional<OtherZero> other_zero(const ReportData& data) {
   const ModelResult& use = data.models[data.choice.recommended];
-  const ModelResult& best = data.models[data.choice.best];
-  const UnitErrors& errors = use.errors;
-  return (errors.within_jnd >= kGoodShare ? "Use " : "No model is good enough as recorded; the best choice is ") +
-         use.name + seeds_text(use) + ": a whole tick takes " + with_thousands(fixed(use.time.tick.median_ns, 0)) +
-         " ns, the error is below the just noticeable difference in " + percent(errors.within_jnd) +
-         " of the test, and 99 % of the errors are below " + three_digits(errors.p99_error_over_jnd) + " JND" +
-         interval_text(errors.p99_interval()) + (&best != &use ? best_text(best, use) : "") +
-         "; this test chose it among " + std::to_string(data.models.size() - 1) +
-         " models, so another recording has to confirm these figures." + surface_text(data, use);
+  const auto farthest = std::ranges::max_element(
+      data.tested, {}, [](const TestedRecording& one) { return std::abs(one.surface.minimum_at); });
+  const OffsetEstimate& surface = farthest->surface;
+  const bool ambiguous = std::abs(surface.force_offset_N) > data.scene.jnd.at(0.0);
+  if (use.moved.within_jnd - use.errors.within_jnd < kShareThatMatters &&
+      !(ambiguous && use.errors.within_jnd < kGoodShare))
+    return {};
+  OtherZero found{farthest->recording->recording.name};
+  if (surface.at != 0.0 || ambiguous) found.surface_m = surface.minimum_at;
+  double trained_N = 0.0;
+  for (const RecordingOffset& one : data.surfaces)
+    trained_N += one.force_zero_N / static_cast<double>(data.surfaces.size());
+  const FreeAir& air = farthest->recording->surface.air;
+  const double zero_N = air.zero_N - trained_N;
+  if (air.found && std::abs(zero_N) > std::max(0.5 * data.scene.jnd.at(0.0), 2.0 * air.zero_error_N)) {
+    found.force_N = zero_N;
+  } else if (ambiguous) {
+    found.force_N = surface.force_offset_N;
+  }
+  return found;
+}
+
+// "The force of TEST reads 0.18 N too high, or the surface lies 0.32 mm off; tare and test again."
+std::string zero_text(const OtherZero& zero) {
+  const std::string force = "force of " + zero.recording + " reads " + general(std::abs(zero.force_N), 2) + " N too " +
+                            (zero.force_N > 0.0 ? "high" : "low");
+  const std::string surface = "lies " + general(std::abs(1e3 * zero.surface_m), 2) + " mm off";
+  if (zero.force_N == 0.0) return "The surface of " + zero.recording + " " + surface + "; set its zero and test again.";
+  return "The " + force + (zero.surface_m != 0.0 ? ", or the surface " + surface : "") + "; tare and test again.";
+}
+
+// The command that corrects the zero of a test recording.
+std::string zero_command(const OtherZero& zero, const ReportRequest& request) {
+  std::string path = zero.recording + ".csv";
+  for (const std::string& one : request.test_files)
+    if (std::filesystem::path(one).stem() == zero.recording) path = one;
+  return "palpate import " + shell_word(path) +
+         (zero.force_N != 0.0 ? " --tare " + general(zero.force_N, 3) : " --zero " + general(zero.surface_m, 3)) +
+         " --out " + shell_word(zero.recording + "_zeroed.csv");
+}
+
+// The answer of a report, which page, report.json and terminal show: one line.
+std::string answer(const ReportData& data) {
+  if (const auto zero = other_zero(data)) return zero_text(*zero);
+  const ModelResult& use = data.models[data.choice.recommended];
+  return recommendation(use.name, use.candidate()) +
+         (use.errors.within_jnd >= kGoodShare ? " Confirm on another recording." : "");
+}
+
+// What is said of a model beside the recommended one.
+std::string compared(const ModelResult& one) {
+  return one.name + ", " + share_text(one.errors.within_jnd) + " within one JND, 99 % error " +
+         general(one.errors.p99_error_over_jnd, 2) + " JND, " + tick_text(one.time.tick.median_ns);
+}
+
+// The lines below the answer: what else the rule says, and the next command.
+std::vector<std::string> details(const ReportData& data, const ReportRequest& request) {
+  const Ranking& choice = data.choice;
+  const ModelResult& use = data.models[choice.recommended];
+  std::vector<std::string> lines;
+  if (const auto zero = other_zero(data)) {
+    lines.push_back("Correct its zero: " + zero_command(*zero, request));
+    lines.push_back("As recorded: " + recommendation(use.name, use.candidate()) + " With the surface aligned, which " +
+                    "uses the forces of the test: " + share_text(use.moved.within_jnd) + ".");
+  }
+  if (choice.best != choice.recommended)
+    lines.push_back("As good, but slower: " + compared(data.models[choice.best]) + ".");
+  if (choice.fastest_below_jnd && choice.fastest_below_jnd != choice.recommended)
+    lines.push_back("The fastest whose errors stay below the JND: " + compared(data.models[*choice.fastest_below_jnd]) +
+                    ".");
+  for (std::size_t i = 1; i < data.models.size(); ++i) {
+    const ModelResult& one = data.models[i];
+    if (*one.plan != ModelPlan{} || one.selects_size || family_name(*use.plan) == family_name(*one.plan)) continue;
+    lines.push_back("palpate fit without --method makes " + compared(one) +
+                    (choice.as_good[i] ? "; it is as good, and " + use.name + " is faster." : "; it is worse here."));
+  }
+  lines.push_back("Confirm: palpate replay --recording OTHER.csv --model " + shell_word(request.out + "/model.json"));
+  return lines;
 }
 
 // All numbers of the report. Those that differ from run to run are in "timings".
-OrderedJson report_json(const ReportData& data, const ReportRequest& request, const std::string& answer,
-                        const std::vector<Table>& tables, const std::vector<Figure>& figures,
-                        const std::string& machine, double seconds) {
+OrderedJson report_json(const ReportData& data, const ReportRequest& request, const std::vector<Table>& tables,
+                        const std::vector<Figure>& figures, const std::string& machine, double seconds) {
   OrderedJson numbers = OrderedJson::object();
   OrderedJson times = OrderedJson::object();
   for (const Table& table : tables) (table.has_times ? times : numbers)[table.name] = table_json(table);
   OrderedJson list = OrderedJson::array();
   for (const Figure& figure : figures) list.push_back(figure.plot.name);
-  OrderedJson candidates = OrderedJson::array(), near_best = OrderedJson::array();
+  OrderedJson candidates = OrderedJson::array(), as_good = OrderedJson::array();
   for (std::size_t i = 1; i < data.models.size(); ++i) {
     candidates.push_back(data.models[i].name);
-    if (data.choice.near_best[i]) near_best.push_back(data.models[i].name);
+    if (data.choice.as_good[i]) as_good.push_back(data.models[i].name);
   }
   OrderedJson offsets = OrderedJson::array();
-  for (const RecordingOffset& one : data.tested) offsets.push_back(one.offset_m);
+  for (const TestedRecording& one : data.tested) offsets.push_back(one.surface.at);
   return {{"format", "palpate-report"},
           {"version", 1},
           {"scene", data.scene.name},
@@ -122,23 +170,25 @@ OrderedJson report_json(const ReportData& data, const ReportRequest& request, co
           {"timings",
            {{"machine", machine},
             {"seconds", seconds},
-            {"answer", answer},
+            {"answer", answer(data)},
+            {"details", details(data, request)},
             {"recommended", data.models[data.choice.recommended].name},
             {"candidates", candidates},
-            {"near_best", near_best},
+            {"best", data.models[data.choice.best].name},
+            {"as_good", as_good},
             {"tables", times}}},
           {"program", {{"version", request.version}, {"compiler", kCompiler}}},
           {"command_line", request.command_line}};
 }
 
-// Describes methods whose 99 % error is larger with more centres, by more than the margin of the ranking.
+// Describes methods whose 99 % error is larger with more centres, by a difference that counts.
 std::vector<std::string> rising_errors(const ReportData& data) {
   std::vector<std::string> notes;
   for (const ModelResult& few : data.models) {
     for (const ModelResult& many : data.models) {
       if (!few.model || !many.model || few.size >= many.size || !few.plan->selects_centres()) continue;
       const double rise = many.errors.p99_error_over_jnd - few.errors.p99_error_over_jnd;
-      if (family_name(*few.plan) != family_name(*many.plan) || rise <= kMargin_jnd) continue;
+      if (family_name(*few.plan) != family_name(*many.plan) || rise < kLeastDifference_jnd) continue;
       notes.push_back("More centres are worse here: " + many.name + " has a 99 % error of " +
                       three_digits(many.errors.p99_error_over_jnd) + " JND, " + few.name + " of " +
                       three_digits(few.errors.p99_error_over_jnd) + " JND.");
@@ -149,7 +199,7 @@ std::vector<std::string> rising_errors(const ReportData& data) {
 
 // How far the 95 % bound of the recommended model holds.
 std::string bound_note(const ModelResult& use) {
-  if (!use.bound.has_bounds()) return {};
+  if (!use.bound.has_bounds()) return use.name + " gives no error bound.";
   return "The 95 % bound of " + use.name + " holds for " + percent(use.bound.coverage) +
          " of the samples as recorded, " + percent(use.bound_moved.coverage) +
          " with the surface moved; its median is " +
@@ -159,20 +209,14 @@ std::string bound_note(const ModelResult& use) {
 }
 
 // Notes on how the numbers of the first screen were obtained.
-std::string notes_html(const ReportData& data) {
+std::string notes_html(const ReportData& data, const ReportRequest& request) {
   std::vector<std::string> notes;
-  notes.push_back("Recommended: of the models whose 99 % error is at most " + general(kMargin_jnd, 3) +
-                  " JND above the lowest (" + std::to_string(std::ranges::count(data.choice.near_best, true)) + " of " +
-                  std::to_string(data.models.size() - 1) +
-                  "), the one with the shortest tick, or the simplest that takes at most " +
-                  general(100.0 * kEqualTime, 3) + " % longer. In a choice between two forces " +
-                  general(kMargin_jnd, 3) + " JND apart 57 % of the answers are correct; guessing gives 50 %.");
+  for (const std::string& line : details(data, request)) notes.push_back(line);
   for (const ModelResult& one : data.models) {
     if (!one.same.empty()) notes.push_back("The same forces as " + one.name + ": " + joined(one.same) + ".");
   }
   for (std::string& one : rising_errors(data)) notes.push_back(std::move(one));
-  if (std::string bound = bound_note(data.models[data.choice.recommended]); !bound.empty())
-    notes.push_back(std::move(bound));
+  notes.push_back(bound_note(data.models[data.choice.recommended]));
   const std::string& tested_on = data.recordings.folds.front().words;
   if (!tested_on.empty()) notes.push_back("No test recording: " + tested_on + ".");
   double largest_N = 0.0;
@@ -181,15 +225,14 @@ std::string notes_html(const ReportData& data) {
     largest_N = std::max(largest_N, largest_force_N(one->recording));
     accelerometer = accelerometer || one->recording.columns.acceleration;
   }
-  const JndLine paper;
   const JndLine& jnd = data.scene.jnd;
-  notes.push_back(
-      "JND: " + three_digits(1e3 * jnd.offset_N) + " mN + " + three_digits(100.0 * jnd.weber_fraction) +
-      " % of the force." +
-      (jnd.offset_N == paper.offset_N && jnd.weber_fraction == paper.weber_fraction && largest_N > kStudiedUpTo_N
-           ? " It was measured up to 2.5 N; these forces go up to " + three_digits(largest_N) +
-                 " N, where it is extrapolated."
-           : ""));
+  notes.push_back(jnd.offset_N == JndLine{}.offset_N && jnd.weber_fraction == JndLine{}.weber_fraction
+                      ? kJndDefinition
+                      : "Here one JND is " + three_digits(1e3 * jnd.offset_N) + " mN + " +
+                            three_digits(100.0 * jnd.weber_fraction) + " % of the force.");
+  if (largest_N > kStudiedUpTo_N)
+    notes.push_back("The JND was measured up to 2.5 N; these forces go up to " + three_digits(largest_N) +
+                    " N, where it is extrapolated.");
   notes.push_back("A perfect model would have " + percent(data.floor.within_jnd) +
                   " within the JND and 99 % of its errors below " + three_digits(data.floor.p99_error_over_jnd) +
                   " JND, because of the noise of the force sensor (" + three_digits(1e3 * data.floor.force_noise_N) +
@@ -239,6 +282,18 @@ std::string learnt_html(const ReportData& data) {
   return html + "</table>\n";
 }
 
+// The recommended model, fitted to all training recordings; a fold's model was fitted to a part of them.
+Result<std::string> model_text(const ReportData& data, const ReportRequest& request, const FitControl& control) {
+  const ModelResult& use = data.models[data.choice.recommended];
+  const RecordingSet& set = data.recordings;
+  if (set.trained < set.all.size()) return write_model_text(use.model->data());
+  ModelFits fits(set.all, training_scene(request.scene));
+  ModelPlan plan = *use.plan;
+  if (plan.selects_centres()) plan.centres = use.size;
+  auto fit = fits.fit(plan, control);
+  return fit ? write_model_text(fit->data) : fit.error();
+}
+
 }  // namespace
 
 Result<ReportAnswer> make_report(const ReportRequest& request, const FitControl& control) {
@@ -249,9 +304,12 @@ Result<ReportAnswer> make_report(const ReportRequest& request, const FitControl&
   if (!folder) return folder.error();
   const auto recordings = split_recordings(request.train, request.test);
   if (!recordings) return recordings.error();
-  const auto data = measure(*recordings, request.scene, request.quick, control.part(0.0, kMeasuringShare));
+  const auto data =
+      measure(*recordings, request.scene, request.quick, request.budget_ns, control.part(0.0, kMeasuringShare));
   if (!data) return data.error();
   const std::string words = answer(*data);
+  auto model = model_text(*data, request, control.part(kMeasuringShare, 0.99));
+  if (!model) return model.error();
   const std::vector<Table> tables = make_tables(*data);
   const std::vector<Figure> figures = make_figures(*data);
   const std::string machine =
@@ -259,19 +317,20 @@ Result<ReportAnswer> make_report(const ReportRequest& request, const FitControl&
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   const std::string origin = request.command_line + " · " + request.version + ", " + kCompiler + " · " + machine +
                              " · " + three_digits(seconds) + " s";
-  const OrderedJson json = report_json(*data, request, words, tables, figures, machine, seconds);
+  const OrderedJson json = report_json(*data, request, tables, figures, machine, seconds);
   std::vector<std::string> tests;
-  for (const RecordingOffset& one : data->tested) tests.push_back(one.name);
+  for (const TestedRecording& one : data->tested) tests.push_back(one.recording->recording.name);
+  if (const Status status = folder->write("model.json", *model); !status) return status.error();
   const Status written = write_report(*folder, "page.html", tables, figures,
                                       {{"title", escape_html(joined(tests))},
                                        {"answer", escape_html(words)},
                                        {"headline", table_html(headline_table(*data))},
-                                       {"notes", notes_html(*data)},
+                                       {"notes", notes_html(*data, request)},
                                        {"learnt", learnt_html(*data)},
                                        {"origin", escape_html(origin)}},
                                       json, control);
   if (!written) return written.error();
-  return ReportAnswer{table_text(headline_table(*data)), words};
+  return ReportAnswer{table_text(headline_table(*data)), words, details(*data, request)};
 }
 
 }  // namespace palpate

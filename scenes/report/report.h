@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "engine/base/parallel.h"
+#include "scenes/evaluation/model_errors.h"
 #include "scenes/report/recordings.h"
 #include "scenes/scene/scene.h"
 
@@ -15,7 +16,9 @@ struct ReportRequest {
   Scene scene;
   std::vector<PreparedRecordingPointer> train;  // empty: the virtual silicone
   std::vector<PreparedRecordingPointer> test;   // empty: see split_recordings
+  std::vector<std::string> test_files{};        // their paths, for a command in the answer
   bool quick = false;                           // fewer models
+  double budget_ns = kBudget_ns;                // the longest tick of a model that is recommended
   std::string out;
   bool force = false;  // replaces an earlier report in `out`
   std::string command_line;
@@ -25,11 +28,12 @@ struct ReportRequest {
 // What the terminal shows.
 struct ReportAnswer {
   std::vector<std::vector<std::string>> table;  // the first table of the page; titles first
-  std::string sentence;                         // the recommendation
+  std::string sentence;                         // the answer, one line
+  std::vector<std::string> details;             // the lines below it
 };
 
-// Writes index.html, report.json, tables/*.csv and figures/*.{svg,png,gp} into `request.out`, which appears only when
-// it is complete. Errors: gnuplot is missing; those of ReportFolder::create,
+// Writes index.html, report.json, model.json (the recommended model), tables/*.csv and figures/*.{svg,png,gp} into
+// `request.out`, which appears only when it is complete. Errors: gnuplot is missing; those of ReportFolder::create,
 // split_recordings and measure; interrupted.
 Result<ReportAnswer> make_report(const ReportRequest& request, const FitControl& control = {});
 

@@ -8,7 +8,7 @@
 
 #include "engine/base/text.h"
 #include "engine/tick/replay.h"
-#include "scenes/evaluation/error_figures.h"
+#include "scenes/evaluation/model_errors.h"
 #include "scenes/material/rig.h"
 #include "scenes/scene/scene.h"
 #include "scenes/worker/model_request.h"

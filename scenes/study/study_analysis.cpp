@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "engine/base/text.h"
-#include "scenes/evaluation/error_figures.h"
+#include "scenes/evaluation/model_errors.h"
 
 namespace palpate {
 

@@ -1,4 +1,4 @@
-#include "scenes/evaluation/error_figures.h"
+#include "scenes/evaluation/model_errors.h"
 
 #include <gtest/gtest.h>
 

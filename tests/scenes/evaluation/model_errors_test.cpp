@@ -86,9 +86,9 @@ TEST(Bootstrap, OfThreeStrokesIsTheirRange) {
 // expanded percentiles are Phi(-1.054 x 2.262) = 0.86 % at each end: 6 has 0.6 % at or below it, 7 has 2.8 %.
 TEST(Bootstrap, DrawsWholeStrokes) {
   const UnitErrors errors = strokes_with_errors(10);
-  ASSERT_EQ(errors.resampled_p99.size(), kResamples);
+  ASSERT_EQ(errors.drawn_units.p99.size(), kResamples);
   const auto share_up_to = [&](double most) {
-    const auto count = std::ranges::count_if(errors.resampled_p99, [&](float one) { return one <= most; });
+    const auto count = std::ranges::count_if(errors.drawn_units.p99, [&](float one) { return one <= most; });
     return static_cast<double>(count) / kResamples;
   };
   // Four standard errors of a share of 2,000 draws are 4.5 points at most.
@@ -108,7 +108,7 @@ TEST(Bootstrap, ADrawHasTheNearestRank) {
     }
     const UnitErrors unit_errors = errors.unit_errors();
     EXPECT_NEAR(unit_errors.p99_error_over_jnd, samples == 99 ? 9.0 : 0.1, 1e-6);
-    for (const float one : unit_errors.resampled_p99)
+    for (const float one : unit_errors.drawn_units.p99)
       ASSERT_EQ(static_cast<double>(one), unit_errors.p99_error_over_jnd) << samples;
   }
 }
@@ -116,7 +116,7 @@ TEST(Bootstrap, ADrawHasTheNearestRank) {
 // Phi(-sqrt(10 / 9) x 2.262) = 0.86 % of 2,000 draws are 17, Phi(-sqrt(30 / 29) x 2.045) = 1.88 % are 37.
 TEST(Bootstrap, TheIntervalIsExpandedForFewUnits) {
   UnitErrors errors;
-  for (std::size_t i = 0; i < kResamples; ++i) errors.resampled_p99.push_back(static_cast<float>(i));
+  for (std::size_t i = 0; i < kResamples; ++i) errors.drawn_units.p99.push_back(static_cast<float>(i));
   for (const auto& [units, rank] : {std::pair{10, 17.0}, {30, 37.0}}) {
     errors.unit_samples.assign(static_cast<std::size_t>(units), 1.0);
     EXPECT_EQ(errors.p99_interval().low, rank);
@@ -125,7 +125,7 @@ TEST(Bootstrap, TheIntervalIsExpandedForFewUnits) {
 }
 
 TEST(Bootstrap, IsTheSameInEveryRunAndForEveryModelOfTheSameStrokes) {
-  EXPECT_EQ(strokes_with_errors(12).resampled_p99, strokes_with_errors(12).resampled_p99);
+  EXPECT_EQ(strokes_with_errors(12).drawn_units.p99, strokes_with_errors(12).drawn_units.p99);
   const PairedDifference none = paired_difference(strokes_with_errors(12), strokes_with_errors(12));
   EXPECT_EQ(none.interval.low, 0.0);
   EXPECT_EQ(none.interval.high, 0.0);

@@ -1,4 +1,4 @@
-#include "scenes/evaluation/model_timing.h"
+#include "scenes/evaluation/evaluate.h"
 
 #include <gtest/gtest.h>
 

@@ -1,61 +1,69 @@
-#include "scenes/evaluation/ranking.h"
-
+// The rule of the best model.
 #include <gtest/gtest.h>
 
-#include "engine/base/random_stream.h"
+#include "scenes/evaluation/model_errors.h"
 
 namespace palpate {
 namespace {
 
-TEST(Rank, TakesTheFastestNearTheLowestError) {
-  const Ranking ranking = rank({{"greedy", 3.0, 100.0}, {"direct", 0.5, 1000.0}, {"random", 0.6, 200.0}});
-  EXPECT_EQ(ranking.best, 1u);
-  EXPECT_EQ(ranking.recommended, 2u) << "0.1 JND more is within the margin";
-  EXPECT_EQ(ranking.near_best, (std::vector<bool>{false, true, true}));
-}
+struct RankCase {
+  const char* what;
+  std::vector<Candidate> candidates;
+  std::size_t best, recommended;
+};
 
-TEST(Rank, SpeedDoesNotOutweighAnErrorBeyondTheMargin) {
-  EXPECT_EQ(rank({{"greedy", 0.76, 100.0}, {"greedy", 0.5, 1000.0}}).recommended, 1u);
-  EXPECT_EQ(rank({{"greedy", 0.74, 100.0}, {"greedy", 0.5, 1000.0}}).recommended, 0u);
-}
-
-// Reports of recordings in which noise had decided: an interval of a time that was too wide, an interval of a
-// difference that was too wide, 0.011 JND.
-TEST(Rank, NoiseDoesNotDecide) {
-  EXPECT_EQ(rank({{"voxel", 1.42, 268.0}, {"trend", 1.46, 229.0}}).recommended, 1u);
-  EXPECT_EQ(rank({{"direct", 1.72, 2137.0}, {"greedy", 1.76, 339.0}}).recommended, 1u);
-  EXPECT_EQ(rank({{"trend+random", 0.389, 300.0}, {"trend", 0.4, 229.0}}).recommended, 1u);
-}
-
-TEST(Rank, WithEqualTimesTheSimplestMethodIsTaken) {
-  EXPECT_EQ(rank({{"voxel", 0.5, 100.0}, {"trend", 0.6, 109.0}, {"greedy", 0.55, 105.0}}).recommended, 1u);
-  EXPECT_EQ(rank({{"voxel", 0.5, 100.0}, {"trend", 0.6, 111.0}}).recommended, 0u) << "11 % longer";
-  EXPECT_EQ(rank({{"trend+direct", 0.5, 100.0},
-                  {"trend+voxel", 0.5, 100.0},
-                  {"trend+random", 0.5, 100.0},
-                  {"kdtree", 0.5, 100.0}})
-                .recommended,
-            3u);
-  EXPECT_EQ(rank({{"another", 0.5, 100.0}, {"direct", 0.6, 100.0}}).recommended, 1u);
-  EXPECT_EQ(rank({{"greedy", 0.6, 100.0}, {"trend+greedy", 0.5, 105.0}}).recommended, 1u) << "then the lower error";
-}
-
-// For random candidates, no other one near the lowest error is faster by more than a tenth.
-TEST(Rank, TheRecommendedModelIsNearTheBestAndFast) {
-  RandomStream random(11, 0);
-  const char* const methods[] = {"trend", "greedy", "kdtree", "random", "voxel", "direct"};
-  for (int round = 0; round < 2000; ++round) {
-    std::vector<Candidate> candidates;
-    for (int i = 0; i < 8; ++i)
-      candidates.push_back({methods[random.index(6)], random.uniform(0.1, 1.5), random.uniform(100.0, 600.0)});
-    const Ranking ranking = rank(candidates);
-    EXPECT_TRUE(ranking.near_best[ranking.recommended] && ranking.near_best[ranking.best]);
-    for (std::size_t i = 0; i < candidates.size(); ++i) {
-      EXPECT_GE(candidates[i].p99_error_over_jnd, candidates[ranking.best].p99_error_over_jnd);
-      if (!ranking.near_best[i]) continue;
-      EXPECT_LE(candidates[ranking.recommended].tick_ns, 1.1 * candidates[i].tick_ns) << round;
-    }
+TEST(Rank, IsTheRuleOfTwoSentences) {
+  const RankCase cases[] = {
+      {"the largest share", {{0.74, 2.0, 100.0}, {0.95, 2.0, 300.0}}, 1, 1},
+      {"also with a lower 99 % error of another", {{0.91, 1.4, 100.0}, {0.95, 1.9, 300.0}}, 1, 1},
+      {"less than half a point: the shortest tick", {{0.946, 2.0, 100.0}, {0.95, 2.0, 300.0}}, 1, 0},
+      {"one alone has 99 %: its share decides", {{0.97, 1.2, 100.0}, {0.992, 0.9, 300.0}}, 1, 1},
+      {"two have 99 %: the lowest 99 % error", {{0.999, 0.6, 100.0}, {0.995, 0.4, 300.0}}, 1, 1},
+      {"less than 0.1 JND: the shortest tick", {{0.999, 0.49, 100.0}, {0.995, 0.4, 300.0}}, 1, 0},
+      {"just below 99 % with a larger 99 % error",
+       {{0.989, 1.1, 90.0}, {0.992, 0.9, 200.0}, {0.995, 0.4, 300.0}},
+       2,
+       2},
+      {"a tick above the budget", {{0.99, 1.0, 60e3}, {0.91, 1.5, 300.0}}, 1, 1},
+      {"all ticks above the budget", {{0.99, 1.0, 60e3}, {0.91, 1.5, 70e3}}, 0, 0},
+  };
+  for (const RankCase& one : cases) {
+    const Ranking ranking = rank(one.candidates);
+    EXPECT_EQ(ranking.best, one.best) << one.what;
+    EXPECT_EQ(ranking.recommended, one.recommended) << one.what;
+    EXPECT_TRUE(ranking.as_good[ranking.recommended]) << one.what;
   }
+  EXPECT_EQ(rank({{0.99, 1.0, 60e3}, {0.91, 1.5, 300.0}}, 100e3).recommended, 0u) << "another budget";
+  EXPECT_EQ(rank({{0.995, 0.9, 100.0}, {0.999, 0.4, 300.0}}).fastest_below_jnd, 0u);
+  EXPECT_EQ(rank({{0.9, 1.9, 100.0}}).fastest_below_jnd, std::nullopt);
+}
+
+// Both models have the same share. In one pair each stroke differs by the same; in the other a single stroke decides.
+TEST(Rank, ADifferenceThatTheBootstrapDoesNotTellFromZeroDoesNotCount) {
+  for (const bool every : {true, false}) {
+    ModelErrors good(JndLine{1.0, 0.0}), bad(JndLine{1.0, 0.0});
+    for (int stroke = 0; stroke < 10; ++stroke) {
+      for (ModelErrors* one : {&good, &bad}) one->begin_stroke();
+      for (int i = 0; i < 50; ++i) {
+        good.add(i < 2 ? 2.0 : 0.1, 0.0, false);
+        bad.add(i < 2 || (every ? i < 4 : stroke == 0) ? 2.0 : 0.1, 0.0, false);
+      }
+    }
+    const UnitErrors one = good.unit_errors(), other = bad.unit_errors();
+    ASSERT_GT(one.within_jnd - other.within_jnd, kLeastShare);
+    const auto candidate = [](const UnitErrors& errors, double tick_ns) {
+      return Candidate{errors.within_jnd, errors.p99_error_over_jnd, tick_ns, &errors.drawn_strokes};
+    };
+    EXPECT_EQ(rank({candidate(other, 100.0), candidate(one, 300.0)}).recommended, every ? 1u : 0u);
+  }
+}
+
+TEST(Recommendation, IsOneLine) {
+  EXPECT_EQ(recommendation("trend+greedy-100", {0.9998, 0.4, 331.0}),
+            "Use trend+greedy-100: 99.9 % of the test is within one JND, a tick takes 0.33 us.");
+  EXPECT_EQ(recommendation("voxel", {0.879, 1.8, 12345.0}),
+            "No model is good enough; the best is voxel: 87 % of the test is within one JND, a tick takes 12 us.");
+  EXPECT_EQ(share_text(1.0), "100 %");
 }
 
 }  // namespace

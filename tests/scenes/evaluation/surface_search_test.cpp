@@ -1,4 +1,4 @@
-#include "scenes/evaluation/surface_search.h"
+#include "scenes/evaluation/evaluate.h"
 
 #include <gtest/gtest.h>
 

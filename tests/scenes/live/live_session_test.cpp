@@ -12,7 +12,7 @@
 #include "engine/tick/replay.h"
 #include "models/model/file/model_io.h"
 #include "scenes/evaluation/evaluate.h"
-#include "scenes/evaluation/ranking.h"
+#include "scenes/evaluation/model_errors.h"
 #include "scenes/material/rig.h"
 #include "scenes/worker/model_worker.h"
 #include "tests/support/example_model.h"
@@ -158,9 +158,9 @@ TEST_F(SessionOfFiles, RecommendsTheModelThatAReportRecommends) {
   const auto evaluation = must(evaluate(replayed, models));
   std::vector<Candidate> candidates;
   for (std::size_t i = 0; i < 3; ++i) {
-    const double p99 = evaluation.models[i].as_recorded.summary().p99_error_over_jnd;
-    EXPECT_EQ(session->figures(i).errors.p99_error_over_jnd, p99) << i;
-    candidates.push_back({session->models().info(i).method, p99, session->figures(i).tick_ns()});
+    const ErrorSummary errors = evaluation.models[i].as_recorded.summary();
+    EXPECT_EQ(session->figures(i).errors.p99_error_over_jnd, errors.p99_error_over_jnd) << i;
+    candidates.push_back({errors.within_jnd, errors.p99_error_over_jnd, session->figures(i).tick_ns()});
   }
   EXPECT_EQ(rank(candidates).recommended, 2u);
   EXPECT_EQ(session->verdict().chosen, 2u);

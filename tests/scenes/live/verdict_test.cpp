@@ -8,7 +8,7 @@ namespace palpate {
 namespace {
 
 JudgedModel model(std::size_t slot, const char* name, bool paper, double over_jnd, double ns) {
-  return {slot, name, name, paper, over_jnd, {ns, 0.99 * ns, 1.01 * ns, ns}};
+  return {slot, name, paper, over_jnd > 1.0 ? 0.98 - 0.1 * over_jnd : 0.995, over_jnd, {ns, 0.99 * ns, 1.01 * ns, ns}};
 }
 
 // The sentence of the issue: ours against the most accurate one of the paper.
@@ -24,7 +24,7 @@ TEST(Verdict, ComparesTheRecommendedModelWithTheBestOfTheOtherKind) {
 }
 
 TEST(Verdict, OfEquallyGoodModelsTheFasterOneComesFirst) {
-  const Verdict verdict = judge({model(4, "greedy", true, 0.6, 240.0), model(7, "trend", false, 0.4, 390.0)}, "");
+  const Verdict verdict = judge({model(4, "greedy", true, 0.49, 240.0), model(7, "trend", false, 0.4, 390.0)}, "");
   EXPECT_EQ(verdict.chosen, 4u);
   EXPECT_EQ(verdict.headline,
             "greedy feels like the block. So does trend, in 1.6 times the time (390 against 240 ns).");

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "scenes/evaluation/error_figures.h"
+#include "scenes/evaluation/model_errors.h"
 #include "tests/support/message_parts.h"
 
 namespace palpate {
