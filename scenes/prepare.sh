@@ -6,7 +6,7 @@ root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 
 # The only list of Debian packages. These are needed to build and run.
 packages=(g++ cmake ninja-build libeigen3-dev libopenblas-dev liblapacke-dev libhwy-dev
-  libcli11-dev nlohmann-json3-dev gnuplot-nox
+  libcli11-dev nlohmann-json3-dev gnuplot-nox libjs-dygraphs
   pkg-config libglfw3-dev libglm-dev libepoxy-dev libimgui-dev libpng-dev libgl1-mesa-dri
   fonts-dejavu-core libhidapi-dev)
 # Needed by the tests and benchmarks: a virtual display for the window (xvfb-run needs

@@ -9,7 +9,7 @@
 #include "engine/base/whole_file.h"
 #include "engine/tick/tool_sample.h"
 #include "scenes/cli/verbs.h"
-#include "scenes/hard/hard_table.h"
+#include "scenes/hard/hard.h"
 #include "scenes/report/paper.h"
 #include "scenes/report/publish.h"
 #include "scenes/report/report.h"
@@ -97,15 +97,15 @@ struct HardOptions {
 
 void print_marks(const std::vector<HardRow>& rows) {
   std::vector<std::vector<std::string>> lines{{"case"}};
-  for (const ModelPlan& plan : hard_plans()) lines.front().push_back(plan_name(plan));
+  for (const HardMethod& method : hard_methods()) lines.front().push_back(method.name);
   for (const HardRow& row : rows) {
     lines.push_back({row.of.name});
     for (const HardCell& cell : row.cells) lines.back().push_back(cell_text(cell));
   }
   print_table(lines, true);
   std::printf(
-      "\n✓ as expected, ✗ not; the number is the percentage of the ticks in contact within the JND of the true "
-      "force\n%s\n",
+      "\n%s\n✗: an error, a step or the energy breaks what must hold; !: that was not so before; the number is the "
+      "percentage of the ticks in contact within one JND of the true force\n",
       hard_answer(rows).c_str());
 }
 

@@ -1,9 +1,9 @@
-#include "scenes/hard/closed_loop.h"
-
 #include <algorithm>
 #include <cmath>
 #include <utility>
 #include <vector>
+
+#include "scenes/hard/hard.h"
 
 namespace palpate {
 
@@ -19,7 +19,9 @@ bool SimulatedTool::read(double now_s, DeviceSample& sample) noexcept {
   read_step_ = step_;
   // If samples are more frequent than ticks, this is the newest one.
   if (step_ < sample_step_) return false;
-  sample_step_ = step_ + steps_in(settings_.sample_s) - (settings_.sample_s > 1e-3 ? kPeriodSteps / 2 : 0);
+  const int waits = ++sample_ % settings_.grouped == 0 ? settings_.grouped : 1;
+  sample_step_ = step_ + waits * steps_in(settings_.sample_s) - (settings_.sample_s > 1e-3 ? kPeriodSteps / 2 : 0);
+  if (settings_.lost_in > 0 && random_.index(settings_.lost_in) == 0) return false;
   sample = {};
   sample.tool.time_s = now_s;
   const double quantum_m = settings_.encoder_step_m;
@@ -39,7 +41,11 @@ DeviceHealth SimulatedTool::health(double) noexcept {
 
 void SimulatedTool::write(double force_N) noexcept {
   if (count_ == written_.size()) return;  // a delay of 10 ms fills less than half
-  written_[(first_ + count_++) % written_.size()] = {force_N, newest_sample_, step_ + steps_in(settings_.delay_s)};
+  if (settings_.lost_in > 0 && random_.index(settings_.lost_in) == 0) return;
+  const double jitter_s = settings_.jitter_s > 0.0 ? random_.uniform(0.0, settings_.jitter_s) : 0.0;
+  std::int64_t due = step_ + steps_in(settings_.delay_s + jitter_s);
+  if (count_ > 0) due = std::max(due, written_[(first_ + count_ - 1) % written_.size()].due);
+  written_[(first_ + count_++) % written_.size()] = {force_N, newest_sample_, due};
 }
 
 // Acceleration is constant within a step, so that the work of the held force is exact

@@ -1,5 +1,3 @@
-#include "scenes/hard/hard_trials.h"
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -7,6 +5,7 @@
 
 #include "engine/base/random_stream.h"
 #include "engine/tick/replay.h"
+#include "scenes/hard/hard.h"
 
 namespace palpate {
 
@@ -113,7 +112,7 @@ HardFigures measure_hand(const HandTrial& trial, Block& block, const std::shared
     }
   });
   HardFigures figures = measured.figures();
-  figures.energy_J = (loop.faults() & loop_fault::kStops) == 0 ? given_J : HardExpectation::kAny;
+  figures.energy_J = (loop.faults() & loop_fault::kStops) == 0 ? given_J : std::numeric_limits<double>::infinity();
   return figures;
 }
 

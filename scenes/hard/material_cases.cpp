@@ -4,7 +4,7 @@
 #include <map>
 #include <numbers>
 
-#include "scenes/hard/hard_trials.h"
+#include "scenes/hard/hard.h"
 #include "scenes/material/material.h"
 #include "scenes/material/rig.h"
 
@@ -85,7 +85,6 @@ void add_motions(std::vector<HardCase>& cases, const std::shared_ptr<Trainings>&
   }
 }
 
-constexpr double kEncoder_m = 10e-6;
 constexpr double kPress = 0.3;  // of the largest force of the training
 
 HardCase hand_case(const std::shared_ptr<Trainings>& trainings, const std::string& material, const std::string& name,
@@ -95,7 +94,7 @@ HardCase hand_case(const std::shared_ptr<Trainings>& trainings, const std::strin
             HandTrial at = trial;
             at.depth_m = std::sqrt(kPress) * one.depth_m;
             at.force_N = kPress * one.force_N;
-            if (at.exchange_s > 0.0) at.other = one.fits->fit(*parse_plan("trend"), {})->model;
+            if (at.exchange_s > 0.0) at.other = one.fits->fit({"trend", *parse_plan("trend")}, {})->model;
             return HardTrial{one.fits, [=](const auto& model) {
                                const auto block = find_material(material)->make_block();
                                return measure_hand(at, *block, model);
@@ -119,7 +118,7 @@ void add_hands(std::vector<HardCase>& cases, const std::shared_ptr<Trainings>& t
                const Line& line) {
   for (const auto& [hand, grip] :
        {std::pair{"light hand, ", Grip{"a light hand", 0.05, 100.0, 2.2}}, {"heavy hand, ", kGrips[2]}}) {
-    HandTrial trial{{grip, kEncoder_m, line.delay_s}};
+    HandTrial trial{{grip, kHardEncoder_m, line.delay_s}};
     trial.settings.sample_s = line.sample_s;
     cases.push_back(hand_case(trainings, material, std::string(hand) + line.name, trial));
   }
@@ -136,8 +135,21 @@ std::vector<HardCase> material_cases() {
   for (const char* material : {"friction", "sponge", "layered"})  // with memory
     add_hands(cases, trainings, material, {"1 kHz, 1 ms late"});
   for (const char* material : {"maxwell", "stiff"}) {
-    cases.push_back(hand_case(trainings, material, "a pressed mass is released", {{mass_alone(), kEncoder_m, 1e-3}}));
-    cases.push_back(hand_case(trainings, material, "swap while pressing", {{kGrips[1], kEncoder_m, 1e-3}, 0.1}));
+    cases.push_back(
+        hand_case(trainings, material, "a pressed mass is released", {{mass_alone(), kHardEncoder_m, 1e-3}}));
+    cases.push_back(hand_case(trainings, material, "swap while pressing", {{kGrips[1], kHardEncoder_m, 1e-3}, 0.1}));
+    // What lines and devices do beside a constant delay.
+    ClosedLoopSettings line{kGrips[1], kHardEncoder_m, 1e-3};
+    line.sample_s = 1e-3;
+    const auto add = [&](const char* name, const auto& change) {
+      HandTrial trial{line};
+      change(trial.settings);
+      cases.push_back(hand_case(trainings, material, name, trial));
+    };
+    add("a delay of 1 to 4 ms", [](ClosedLoopSettings& at) { at.jitter_s = 3e-3; });
+    add("one packet in ten is lost", [](ClosedLoopSettings& at) { at.lost_in = 10; });
+    add("samples in groups of four", [](ClosedLoopSettings& at) { at.grouped = 4; });
+    add("a device of 1 N", [](ClosedLoopSettings& at) { at.limits.largest_N = 1.0; });
   }
   return cases;
 }

@@ -1,8 +1,9 @@
 // What sensors and hands do wrong, on a soft block that the features describe: the true force of another press decides.
 #include <algorithm>
+#include <cmath>
 
 #include "engine/base/random_stream.h"
-#include "scenes/hard/hard_trials.h"
+#include "scenes/hard/hard.h"
 #include "scenes/material/material_laws.h"
 
 namespace palpate {
@@ -66,7 +67,15 @@ std::vector<double> times_without(std::initializer_list<std::pair<double, double
   return kept_s;
 }
 
-// The change of the true force from tick to tick is 17 mN. No energy beyond what the sensors hide.
+// In and out between the air and the full depth, at one speed.
+Path at_one_speed(double speed_m_per_s) {
+  return [=](double time_s) {
+    constexpr double kWay_m = kTrainingDepth_m - kInAir_m;
+    const double phase = std::fmod(speed_m_per_s * time_s / kWay_m, 2.0);
+    return kInAir_m + kWay_m * (phase < 1.0 ? phase : 2.0 - phase);
+  };
+}
+
 struct RecordingCase {
   const char* name;
   void (*shape)(FaultyPress& press);
@@ -103,6 +112,19 @@ const RecordingCase kRecordingCases[] = {
        p.change([](std::size_t i, double f) {
          return 2 * static_cast<double>(i) < kRecordedSeconds * kRecordedRate_Hz ? f : 1.3 * f;
        });
+     }},
+    {"the force is late",
+     [](FaultyPress& p) {
+       p.fault = [](std::vector<RecordingRow>& rows) {
+         for (std::size_t i = rows.size(); i-- > 3;) rows[i].force_N = rows[i - 3].force_N;
+       };
+     }},
+    {"one constant speed", [](FaultyPress& p) { p.training = at_one_speed(0.02); }},
+    {"slow training, fast test",
+     [](FaultyPress& p) {
+       p.training = at_one_speed(0.001);
+       p.times_s = even_times(3.0 * kRecordedSeconds, kRecordedRate_Hz);
+       p.tested = [path = p.tested](double t) { return path(3.0 * t); };
      }},
     {"a shorter range than the test", [](FaultyPress& p) { p.training = scaled(p.training, 0.5, 0.0); }},
     {"lost samples", [](FaultyPress& p) { p.times_s = times_without({}, 10); }},

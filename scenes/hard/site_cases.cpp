@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "engine/base/random_stream.h"
-#include "scenes/hard/hard_case.h"
+#include "scenes/hard/hard.h"
 
 namespace palpate {
 namespace {

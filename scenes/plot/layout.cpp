@@ -62,14 +62,19 @@ void spread(std::vector<NameTag>& names, double line) {
       names[i].y = std::clamp(block.mean, 0.0, most) + static_cast<double>(i) * line;
 }
 
+// A bar of a point, or a level across the panel; fractions of the panel.
+struct Segment {
+  double x_low, x_high, y_low, y_high;
+};
+
 // Moves names from their points into one of the quadrants between the bars, to the right or left of the point and above
-// or below it: where a name covers the fewest other names and points.
-void place_beside(std::vector<NameTag>& names, double line, double character) {
+// or below it: where a name covers the fewest other names and segments.
+void place_beside(std::vector<NameTag>& names, const std::vector<Segment>& segments, double line, double character) {
   const std::vector<NameTag> points = names;
   for (std::size_t i = 0; i < names.size(); ++i) {
     const double width = character * static_cast<double>(names[i].text.size() + 1);
     double least = std::numeric_limits<double>::infinity();
-    for (const double lines : {0.7, -0.7, 1.7, -1.7, 2.7, -2.7, 3.7, -3.7}) {
+    for (const double lines : {0.7, -0.7, 1.2, -1.2, 1.7, -1.7, 2.3, -2.3}) {
       for (const bool right : {true, false}) {
         NameTag trial = points[i];
         trial.y += lines * line;
@@ -77,11 +82,11 @@ void place_beside(std::vector<NameTag>& names, double line, double character) {
         const double begin = right ? trial.x : trial.x - width;
         double cost = 0.6 * std::abs(lines);
         if (begin < 0.0 || begin + width > 1.0 || trial.y < 0.5 * line || trial.y > 1.0 - 0.5 * line) cost += 100.0;
-        for (std::size_t k = 0; k < names.size(); ++k) {
-          if (k == i) continue;
-          const bool covers = points[k].x > begin && points[k].x < begin + width;
-          if (covers && std::abs(points[k].y - trial.y) < 0.6 * line) cost += 1.0;
-          if (k > i) continue;
+        for (const Segment& one : segments) {
+          const bool beside = one.x_high < begin || one.x_low > begin + width;
+          if (!beside && one.y_high > trial.y - 0.5 * line && one.y_low < trial.y + 0.5 * line) cost += 1.0;
+        }
+        for (std::size_t k = 0; k < i; ++k) {
           const double other = character * static_cast<double>(names[k].text.size() + 1);
           const double other_begin = names[k].begins_here ? names[k].x : names[k].x - other;
           const bool overlaps = other_begin < begin + width && begin < other_begin + other;
@@ -149,16 +154,27 @@ std::vector<NameTag> name_tags(const Panel& panel, double line, double character
   for (const Level& level : panel.levels)
     if (!level.vertical) tags.push_back({level.text, kMutedColour, 1.0, fraction_of(panel.y, y, level.value), true});
   std::vector<NameTag> points;
+  std::vector<Segment> segments;
+  for (const NameTag& level : tags) segments.push_back({0.0, 1.0, level.y, level.y});
   for (const Series& series : panel.series) {
     const PlotRow* last = last_point(series);
     if (!panel.names_at_ends || series.name.empty() || series.mark == Mark::area || last == nullptr) continue;
     const bool ends = series.rows.size() > 1;
+    if (!ends) {
+      const auto at = [&](const Axis& axis, const AxisRange& range, double value, double otherwise) {
+        return fraction_of(axis, range, std::isfinite(value) ? value : otherwise);
+      };
+      const double middle_x = fraction_of(panel.x, x, last->x), middle_y = fraction_of(panel.y, y, last->y);
+      segments.push_back(
+          {at(panel.x, x, last->left, last->x), at(panel.x, x, last->right, last->x), middle_y, middle_y});
+      segments.push_back({middle_x, middle_x, at(panel.y, y, last->low, last->y), at(panel.y, y, last->high, last->y)});
+    }
     (ends ? tags : points)
         .push_back({series.name, series.colour, ends ? 1.0 : fraction_of(panel.x, x, last->x),
                     std::clamp(fraction_of(panel.y, y, last->y), 0.0, 1.0), ends});
   }
   spread(tags, line);
-  place_beside(points, line, character);
+  place_beside(points, segments, line, character);
   tags.insert(tags.end(), points.begin(), points.end());
   return tags;
 }

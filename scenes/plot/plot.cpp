@@ -74,8 +74,8 @@ std::string axis_text(const char* name, const Axis& axis, const AxisRange& range
 }
 
 // The variables of style.gp that draw the marks.
-constexpr const char* kStyles[] = {"line",        "dashed", "curve", "hollow_curve", "bars",
-                                   "hollow_bars", "up",     "down",  "area"};
+constexpr const char* kStyles[] = {"line",        "dashed",      "curve", "hollow_curve", "bars",
+                                   "hollow_bars", "square_bars", "up",    "down",         "area"};
 
 // `named`: the names that are in the legend of this panel or an earlier one.
 std::string drawn_with(const Series& series, bool names_at_ends, std::set<std::string>& named) {

@@ -30,6 +30,7 @@ enum class Mark {
   hollow_curve,  // with points filled with the background colour
   bars,          // points with bars from `low` to `high` and from `left` to `right`
   hollow_bars,   // with hollow points
+  square_bars,   // with squares
   up,            // small triangles at the edge
   down,
   area,  // grey, from `low` to `high` at each x

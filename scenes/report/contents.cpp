@@ -3,9 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <functional>
 #include <utility>
 
 #include "engine/base/text.h"
+#include "models/correction/methods.h"
+#include "scenes/evaluation/evaluate.h"
 #include "scenes/plot/layout.h"
 
 namespace palpate {
@@ -140,6 +143,10 @@ std::string name_with_same(const ModelResult& model) {
   return name;
 }
 
+constexpr std::size_t kWorstModels = 3;  // in the figure of the worst stretch
+// The curves in the page: the extremes of so many groups of rows, and every row this near to a largest error.
+constexpr std::size_t kGroups = 900;
+constexpr double kWholeNear_s = 0.05;
 constexpr double kBudget_s = 1e-3;
 constexpr double kNear = 0.2;  // the budget is drawn if a tick takes more than this share of it
 // The curves omit bins with fewer samples.
@@ -224,7 +231,11 @@ Figure speed_figure(const ReportData& data) {
                               Mark::line,
                               {{point.x, point.y}, {1e-9 * next.time.tick.median_ns, next.errors.p99_error_over_jnd}}});
     }
-    panel.series.push_back({one.name, model_colour(one), mark_of(one, Mark::hollow_bars, Mark::bars), {point}});
+    panel.series.push_back(
+        {one.name,
+         model_colour(one),
+         one.plan->method == &kTrendMethod ? Mark::square_bars : mark_of(one, Mark::hollow_bars, Mark::bars),
+         {point}});
   }
   panel.levels.push_back({1.0, "1 JND"});
   if (data.floor.p99_error_over_jnd > 0.3 * least) panel.levels.push_back({data.floor.p99_error_over_jnd, "noise"});
@@ -239,27 +250,31 @@ Figure speed_figure(const ReportData& data) {
   figure.plot.panels = {std::move(panel)};
   figure.caption =
       "Lower is more accurate, further left is faster; noise: that of the force sensor. Hollow: methods on the "
-      "measured "
-      "force, as in the paper; filled: the trend and its correction. Bars: six rounds of timing, and the 95 % interval "
-      "of the error where there is one. A line joins two numbers of centres of one method.";
+      "measured force, as in the paper; square: the trend; filled: the trend and its correction. Horizontal bars: "
+      "spread of the time; "
+      "vertical: 95 % interval. A line joins two numbers of centres of one method.";
   return figure;
 }
 
 Figure worst_figure(const ReportData& data) {
   Figure figure;
-  const WorstStretch& worst = data.worst;
+  const TestCurves& curves = data.curves;
   std::vector<ComparedModel> models;
-  for (const std::size_t i : worst.models) {
+  for (const std::size_t i : curves.models) {
     const ModelResult& model = data.models[i];
-    models.push_back({{model.name, model_colour(model), mark_of(model, Mark::dashed, Mark::line), {}}, data.scene.jnd});
+    if (models.size() < kWorstModels)
+      models.push_back(
+          {{model.name, model_colour(model), mark_of(model, Mark::dashed, Mark::line), {}}, data.scene.jnd});
   }
+  const std::vector<ComparedMoment> rows(curves.moments.begin() + static_cast<std::ptrdiff_t>(curves.first),
+                                         curves.moments.begin() + static_cast<std::ptrdiff_t>(curves.last) + 1);
   figure.plot.name = "worst_stretch";
-  figure.plot.panels = compared_forces(worst.recording, models, worst.rows);
+  figure.plot.panels = compared_forces(curves.recording->name, models, rows);
   figure.plot.height = 0.8;
-  figure.caption = "The worst " + three_digits(worst.rows.back().time_s - worst.rows.front().time_s) + " s of " +
+  figure.caption = "The worst " + three_digits(rows.back().time_s - rows.front().time_s) + " s of " +
                    data.models[data.choice.recommended].name + " (largest mean squared error over the JND): RMS " +
-                   three_digits(std::sqrt(std::max(0.0, worst.score))) +
-                   " JND. Below: model minus measurement; grey: below the just noticeable difference.";
+                   three_digits(std::sqrt(std::max(0.0, curves.score))) +
+                   " JND. Below: model minus measurement; grey: within one JND.";
   return figure;
 }
 
@@ -321,6 +336,82 @@ std::vector<Table> make_tables(const ReportData& data) {
 
 std::vector<Figure> make_figures(const ReportData& data) {
   return {speed_figure(data), worst_figure(data), force_figure(data)};
+}
+
+std::string curves_json(const ReportData& data) {
+  const TestCurves& curves = data.curves;
+  const std::vector<ComparedMoment>& moments = curves.moments;
+  const JndLine& jnd = data.scene.jnd;
+  const std::size_t count = curves.models.size();
+  const auto over_jnd = [&](const ComparedMoment& one, std::size_t model) {
+    return one.in_contact ? (one.force_N[model] - one.measured_N) / jnd.at(one.measured_N) : kNoValue;
+  };
+  // The measured force, those of the models, and their differences in JND.
+  const auto value = [&](const ComparedMoment& one, std::size_t column) {
+    return column == 0 ? one.measured_N : column <= count ? one.force_N[column - 1] : over_jnd(one, column - count - 1);
+  };
+  const std::vector<RecordingRow>& rows = curves.recording->rows;
+  const std::size_t skipped = rows.size() - moments.size();
+  std::vector<bool> whole(moments.size(), moments.size() <= 2 * kGroups);
+  nlohmann::ordered_json models = nlohmann::ordered_json::array();
+  for (std::size_t k = 0; k < count; ++k) {
+    const ModelResult& model = data.models[curves.models[k]];
+    const auto size = [&](const ComparedMoment& one) { return one.in_contact ? std::abs(over_jnd(one, k)) : -1.0; };
+    const auto worst = static_cast<std::size_t>(std::ranges::max_element(moments, {}, size) - moments.begin());
+    for (std::size_t i = 0; i < moments.size(); ++i)
+      if (std::abs(moments[i].time_s - moments[worst].time_s) < kWholeNear_s) whole[i] = true;
+    const Motion motion = motion_at(skipped + worst, rows.size(),
+                                    [&](std::size_t i) { return std::pair(rows[i].time_s, rows[i].position_m); });
+    char colour[8];
+    std::snprintf(colour, sizeof colour, "#%06x", model_colour(model) & 0xFFFFFFU);
+    models.push_back({{"name", model.name},
+                      {"colour", colour},
+                      {"worst_s", moments[worst].time_s},
+                      {"said", model.name + " errs most, by " + general(size(moments[worst]), 2) + " JND, at " +
+                                   fixed(moments[worst].time_s, 2) + " s: " + motion_words(motion) + ", " +
+                                   general(1e3 * std::abs(motion.velocity_m_per_s), 2) + " mm/s."}});
+  }
+  std::string table;
+  const auto add_row = [&](double time_s, const std::function<double(std::size_t)>& of) {
+    table += (table.empty() ? "[" : ",\n[") + fixed(time_s, 4);
+    for (std::size_t column = 0; column <= 2 * count; ++column)
+      table += "," + (std::isfinite(of(column)) ? general(of(column), column <= count ? 4 : 3) : "null");
+    table += "]";
+  };
+  const std::size_t group = moments.size() / kGroups + 1;
+  for (std::size_t begin = 0; begin < moments.size(); begin += group) {
+    const std::size_t end = std::min(begin + group, moments.size());
+    const auto from = whole.begin() + static_cast<std::ptrdiff_t>(begin);
+    if (std::any_of(from, from + static_cast<std::ptrdiff_t>(end - begin), [](bool one) { return one; })) {
+      for (std::size_t i = begin; i < end; ++i)
+        add_row(moments[i].time_s, [&](std::size_t column) { return value(moments[i], column); });
+      continue;
+    }
+    // The extremes of each column, in the order of time.
+    std::vector<std::pair<double, double>> extremes;
+    for (std::size_t column = 0; column <= 2 * count; ++column) {
+      std::size_t least = begin, most = begin;
+      for (std::size_t i = begin; i < end; ++i) {
+        const double here = value(moments[i], column);
+        if (!(here >= value(moments[least], column))) least = i;
+        if (!(here <= value(moments[most], column))) most = i;
+      }
+      extremes.emplace_back(value(moments[std::min(least, most)], column),
+                            value(moments[std::max(least, most)], column));
+    }
+    add_row(moments[begin].time_s, [&](std::size_t column) { return extremes[column].first; });
+    add_row(moments[(begin + end) / 2].time_s, [&](std::size_t column) { return extremes[column].second; });
+  }
+  nlohmann::ordered_json dots = nlohmann::ordered_json::array();
+  const Panel panel = speed_figure(data).plot.panels.front();
+  for (std::size_t k = 0; k < panel.series.size(); ++k)
+    if (!panel.series[k].name.empty()) dots.push_back({k + 1, panel.series[k].name});
+  const nlohmann::ordered_json about{{"models", models}, {"dots", dots}};
+  std::string text = about.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+  text.replace(text.size() - 1, 1, ",\"rows\":[" + table + "]}");
+  // No end of the element within a name.
+  for (std::size_t at = 0; (at = text.find('<', at)) != std::string::npos;) text.replace(at, 1, "\\u003c");
+  return text;
 }
 
 }  // namespace palpate

@@ -2,6 +2,7 @@
 // Thread guarantee: pure functions.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "scenes/report/measure.h"
@@ -14,6 +15,10 @@ Table headline_table(const ReportData& data);
 
 // All numbers of a report: the tables models, recordings, force_bins, features and times.
 std::vector<Table> make_tables(const ReportData& data);
+
+// The curves of the test for the script of the page, as JSON: the models with their largest errors in words, the plots
+// of the dots of speed_error, and the rows, thinned by minima and maxima.
+std::string curves_json(const ReportData& data);
 
 // Error over time, the worst stretch, and the error by force.
 std::vector<Figure> make_figures(const ReportData& data);

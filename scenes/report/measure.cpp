@@ -12,6 +12,7 @@ namespace {
 
 constexpr double kPrepareSeconds = 1.0;   // estimate for one base
 constexpr double kEvaluateSeconds = 0.1;  // estimate for one model
+constexpr double kShownAir_s = 0.1;       // free air at the ends of the worst stretch
 
 // Combines the progress of parts of different lengths, which are given in expected seconds.
 class Progress {
@@ -277,25 +278,32 @@ class Measurement {
     models_ = std::move(kept);
   }
 
-  // Finds the worst stretch of the recommended model. Shows it with the greedy method of the paper and the best model.
+  // The recommended model, the best one and the greedy method of the paper, and then those of the first table.
+  std::vector<std::size_t> shown_models() const {
+    std::vector<std::size_t> shown{data_.choice.recommended};
+    const auto add = [&](std::size_t i) {
+      if (i > 0 && shown.size() < kMaxModels && std::ranges::count(shown, i) == 0) shown.push_back(i);
+    };
+    add(data_.choice.best);
+    for (std::size_t i = 1; i < models_.size(); ++i)
+      if (models_[i].plan->base == Base::force && models_[i].plan->method == &kGreedyMethod && !models_[i].selects_size)
+        add(i);
+    for (const std::size_t i : headline_models(data_)) add(i);
+    return shown;
+  }
+
   void find_worst() {
-    const Ranking& choice = data_.choice;
-    std::vector<std::size_t> shown{choice.recommended};
-    for (std::size_t i = 1; i < models_.size(); ++i) {
-      const ModelResult& one = models_[i];
-      const bool papers = one.plan->base == Base::force && one.plan->method == &kGreedyMethod && !one.selects_size;
-      if (i != choice.recommended && (i == choice.best || papers)) shown.push_back(i);
-    }
+    const std::vector<std::size_t> shown = shown_models();
     for (std::size_t fold = 0; fold < data_.recordings.folds.size(); ++fold) {
       std::vector<ModelPointer> models;
       for (const std::size_t i : shown) models.push_back(models_[i].fits[fold]);
       for (const PreparedRecordingPointer& recording : data_.recordings.folds[fold].tested) {
-        WorstStretch stretch =
-            worst_stretch(recording->recording, models, data_.scene.jnd, data_.recordings.folds[fold].counted_from_s);
-        if (stretch.score > data_.worst.score) data_.worst = std::move(stretch);
+        TestCurves curves =
+            test_curves(recording->recording, models, data_.scene.jnd, data_.recordings.folds[fold].counted_from_s);
+        if (curves.score > data_.curves.score) data_.curves = std::move(curves);
       }
     }
-    data_.worst.models = std::move(shown);
+    data_.curves.models = shown;
   }
 
   ReportData& data_;
@@ -307,13 +315,15 @@ class Measurement {
 
 }  // namespace
 
-WorstStretch worst_stretch(const Recording& recording, const std::vector<ModelPointer>& models, const JndLine& jnd,
-                           double from_s) {
-  std::vector<ComparedMoment> rows;
+TestCurves test_curves(const Recording& recording, const std::vector<ModelPointer>& models, const JndLine& jnd,
+                       double from_s) {
+  TestCurves curves;
+  curves.recording = &recording;
+  std::vector<ComparedMoment>& rows = curves.moments;
   // Over the rows before each: the sum of (error / JND)^2 of the first model, and the samples in contact.
   std::vector<double> squares{0.0};
   std::vector<std::size_t> contacts{0};
-  const auto visitor = [&](const RecordingRow& row, const TickSnapshot& snapshot, const HapticsTick&) {
+  replay(recording, models, [&](const RecordingRow& row, const TickSnapshot& snapshot, const HapticsTick&) {
     if (row.time_s < from_s) return;
     const bool contact = snapshot.in_contact;
     const double ratio = contact ? jnd.error_over_jnd(snapshot.force_N[0], row.force_N) : 0.0;
@@ -321,26 +331,27 @@ WorstStretch worst_stretch(const Recording& recording, const std::vector<ModelPo
     contacts.push_back(contacts.back() + (contact ? 1 : 0));
     const auto begin = snapshot.force_N.begin();
     rows.push_back({row.time_s, row.force_N, contact, {begin, begin + snapshot.model_count}});
-  };
-  WorstStretch worst;
-  worst.recording = recording.name;
-  replay(recording, models, visitor);
+  });
   const double length_s = std::min(kStretchSeconds, rows.back().time_s - rows.front().time_s);
   std::size_t first = 0;
-  std::pair<std::size_t, std::size_t> stretch{0, rows.size() - 1};  // includes both rows
   for (std::size_t last = 0; last < rows.size(); ++last) {
     if (rows[last].time_s - rows.front().time_s < length_s) continue;
     while (rows[last].time_s - rows[first].time_s > length_s) ++first;
     // A quarter of the window is the least divisor, so that a window with little contact has a low score.
     const std::size_t contact = std::max(contacts[last + 1] - contacts[first], (last - first) / 4 + 1);
     const double score = (squares[last + 1] - squares[first]) / static_cast<double>(contact);
-    if (score <= worst.score) continue;
-    worst.score = score;
-    stretch = {first, last};
+    if (score <= curves.score) continue;
+    curves.score = score;
+    curves.first = first;
+    curves.last = last;
   }
-  worst.rows.assign(rows.begin() + static_cast<std::ptrdiff_t>(stretch.first),
-                    rows.begin() + static_cast<std::ptrdiff_t>(stretch.second + 1));
-  return worst;
+  // Leaves out the free air before the first contact of the stretch, and after the last.
+  std::size_t begin = curves.first, end = curves.last;
+  while (begin < end && !rows[begin].in_contact) ++begin;
+  while (begin < end && !rows[end].in_contact) --end;
+  while (rows[begin].time_s - rows[curves.first].time_s > kShownAir_s) ++curves.first;
+  while (rows[curves.last].time_s - rows[end].time_s > kShownAir_s) --curves.last;
+  return curves;
 }
 
 Result<ReportData> measure(const RecordingSet& recordings, const Scene& scene, bool quick, double budget_ns,

@@ -19,18 +19,21 @@ namespace palpate {
 
 inline constexpr double kStretchSeconds = 5.0;
 
-struct WorstStretch {
-  std::string recording;
-  double score = -1.0;  // mean of (error / JND)^2 of the first model; below 0: none was found
-  std::vector<ComparedMoment> rows;
-  std::vector<std::size_t> models;  // indices of ReportData::models; set by `measure`
+// The forces of models over one test recording.
+struct TestCurves {
+  const Recording* recording = nullptr;
+  std::vector<ComparedMoment> moments;  // the rows that count
+  // The stretch of kStretchSeconds in which the first model has the largest mean of (error / JND)^2 over the samples in
+  // contact, without the free air at its ends; a shorter recording is one stretch. The divisor of the mean is at least
+  // a quarter of all samples of the stretch. It contains both rows, indices of `moments`.
+  std::size_t first = 0, last = 0;
+  double score = -1.0;                // that mean; below 0: there is no recording
+  std::vector<std::size_t> models{};  // indices of ReportData::models, the recommended first; set by `measure`
 };
 
-// The stretch of kStretchSeconds in which the first of `models` has the largest mean of (error / JND)^2 over the
-// samples in contact; a shorter recording is one stretch. The divisor of the mean is at least a quarter of all samples
-// of the stretch. `models`: up to kMaxModels. Samples before `from_s` are replayed, but do not count.
-WorstStretch worst_stretch(const Recording& recording, const std::vector<ModelPointer>& models, const JndLine& jnd,
-                           double from_s = -1e300);
+// `models`: up to kMaxModels. Samples before `from_s` are replayed, but do not count.
+TestCurves test_curves(const Recording& recording, const std::vector<ModelPointer>& models, const JndLine& jnd,
+                       double from_s = -1e300);
 
 // Whether the model is one of the comparison that everybody sees: voxel, random, kdtree and greedy as in the paper, the
 // trend, and the trend corrected by greedy.
@@ -82,7 +85,7 @@ struct ReportData {
   NoiseFloor floor;                       // of all test recordings together
   std::vector<ModelResult> models;        // the first is always 0 N; no two have the same forces
   Ranking choice;                         // of `models`
-  WorstStretch worst;                     // of the recommended model
+  TestCurves curves;                      // of the recording with the worst stretch of the recommended model
   std::vector<RecordingOffset> surfaces;  // of the training recordings; this and the following: of the first fold
   std::vector<double> papers_times_s;     // relaxation times identified for the methods on the measured force
   bool corrects = true;                   // whether cross-validation selected the correction

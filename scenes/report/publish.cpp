@@ -201,8 +201,9 @@ std::string table_html(const Table& table) {
     for (std::size_t i = 0; i < row.size(); ++i) {
       const TableColumn& column = table.columns[i];
       if (column.title.empty()) continue;
-      html += is_text(table, i) ? "<td class=\"text\">" : "<td>";
-      html += escape_html(shown(row[i], column)) + under_html(row, i + 1, column) + "</td>";
+      const std::string text = shown(row[i], column);
+      html += text.starts_with("✗") ? "<td class=\"broken\">" : is_text(table, i) ? "<td class=\"text\">" : "<td>";
+      html += escape_html(text) + under_html(row, i + 1, column) + "</td>";
     }
     html += "</tr>\n";
   }

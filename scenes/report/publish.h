@@ -71,7 +71,7 @@ nlohmann::ordered_json table_json(const Table& table);
 // The cells as on the page, the titles first.
 std::vector<std::vector<std::string>> table_text(const Table& table);
 
-// <div><table>...</table></div> with all text escaped.
+// <div><table>...</table></div> with all text escaped. A cell that begins with ✗ is red.
 std::string table_html(const Table& table);
 
 // Converts an SVG drawing of gnuplot for a page. Removes the prologue and the fixed size, prefixes ids with `name`, and

@@ -12,9 +12,11 @@
 #include <thread>
 
 #include "engine/base/text.h"
+#include "engine/base/whole_file.h"
 #include "models/model/file/model_io.h"
 #include "scenes/evaluation/model_errors.h"
 #include "scenes/report/contents.h"
+#include "scenes/scene/folders.h"
 
 namespace palpate {
 namespace {
@@ -282,6 +284,19 @@ std::string learnt_html(const ReportData& data) {
   return html + "</table>\n";
 }
 
+// The data, the library that draws it and the script of the page; without the library the page has its figures only.
+std::string curves_html(const std::string& data) {
+  const std::string folder = "/usr/share/javascript/dygraphs/";
+  const auto library = read_whole_file(folder + "dygraph.min.js"), style = read_whole_file(folder + "dygraph.min.css");
+  const auto licence = read_whole_file("/usr/share/doc/libjs-dygraphs/copyright");
+  const auto assets = find_assets();
+  const auto script = read_whole_file((assets ? *assets : "") + "/report/page.js");
+  if (!library || !style || !licence || !script) return {};
+  return "<!-- dygraphs, from Debian's libjs-dygraphs:\n" + escape_html(*licence) + "-->\n<style>" + *style +
+         "</style>\n<script>" + *library + "</script>\n<script type=\"application/json\" id=\"curves-data\">" + data +
+         "</script>\n<script>" + *script + "</script>\n";
+}
+
 // The recommended model, fitted to all training recordings; a fold's model was fitted to a part of them.
 Result<std::string> model_text(const ReportData& data, const ReportRequest& request, const FitControl& control) {
   const ModelResult& use = data.models[data.choice.recommended];
@@ -325,6 +340,7 @@ Result<ReportAnswer> make_report(const ReportRequest& request, const FitControl&
                                       {{"title", escape_html(joined(tests))},
                                        {"answer", escape_html(words)},
                                        {"headline", table_html(headline_table(*data))},
+                                       {"curves", curves_html(curves_json(*data))},
                                        {"notes", notes_html(*data, request)},
                                        {"learnt", learnt_html(*data)},
                                        {"origin", escape_html(origin)}},

@@ -8,7 +8,7 @@
 #include <iostream>
 
 #include "engine/tick/replay.h"
-#include "scenes/hard/hard_trials.h"
+#include "scenes/hard/hard.h"
 #include "scenes/material/material.h"
 #include "tests/support/fitting.h"
 

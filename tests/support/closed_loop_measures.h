@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "scenes/hard/closed_loop.h"
+#include "scenes/hard/hard.h"
 #include "tests/support/fitting.h"
 #include "tests/support/rt_guard.h"
 

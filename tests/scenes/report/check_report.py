@@ -1,17 +1,17 @@
 #!/usr/bin/env python3
 """Recomputes the first screen of a report from FORCES.csv of `palpate replay`.
 
-  check_report.py REPORT_DIR MODEL=FORCES.csv [MODEL=FORCES.csv ...]
+  check_report.py REPORT_DIR MODEL=FORCES.csv[,FORCES.csv ...] [MODEL=...]
 
 Shares no code with the program. It reads the forces of one test recording, applies the definitions of the page and
 compares
-  - the numbers of the sentence, as printed; times, which FORCES.csv does not contain, are compared with
+  - the numbers of the answer, as printed; times, which FORCES.csv does not contain, are compared with
     tables/times.csv,
   - the rows of each model and of one that always returns 0 N: in tables/models.csv, and in
-    tables/force_bins.csv, to one part in a million.
+    tables/force_bins.csv, to one part in a million; of several files, one for each seed, the median of each figure.
 Intervals of the 99 % error come from random draws: their ends must lie between the quantiles of this script's own draws
 of strokes at half and at twice the probability.
-All models of the sentence must be given.
+All models of the tables must be given.
 """
 import bisect
 import collections
@@ -171,42 +171,21 @@ def check_bins(check, folder, name, strokes):
             check.near(f"{name} to {high} N: {key}", float(row[key]), value, 1e-6 * abs(value) + 1e-12)
 
 
-def printed(text):
-    """The printed number, and half a unit of its last digit."""
-    digits = re.search(r"[-−+]?[\d,]*\.?\d+(e-?\d+)?", text).group(0).replace(",", "").replace("−", "-")
-    mantissa, _, exponent = digits.partition("e")
-    decimals = len(mantissa.partition(".")[2])
-    return float(digits), 0.5 * 10.0 ** (int(exponent or 0) - decimals)
+def median(values):
+    return sorted(values)[len(values) // 2]
 
 
-SENTENCE = re.compile(
-    r"(?P<model>\S+)( \(the median of \d seeds\))?: a whole tick takes (?P<tick>[\d,]+) ns, the error is below the just "
-    r"noticeable difference in (?P<within>[\d.]+) % of the test, and 99 % of the errors are below (?P<p99>\S+) JND"
-    r"( \(95 %: (?P<low>\S+) to (?P<high>\S+)\))?(; the lowest 99 % error, (?P<less>\S+) JND less.*, is that of "
-    r"(?P<best>\S+), which takes (?P<ratio>\S+) times as long)?; this test chose it among (?P<candidates>\d+) models")
-
-
-def check_sentence(check, report, known, rows, times):
-    said = SENTENCE.search(report["answer"])
-    if not said:
-        sys.exit("error: the sentence of the report is not as expected: " + report["answer"])
-    model = said["model"]
-    errors, row = known[model][0], rows[model]
-    numbers = {"tick": float(times[model]["tick_ns"]), "within": math.floor(1e4 * errors["within_jnd"]) / 100.0,
-               "p99": errors["p99_error_over_jnd"], "candidates": len(report["candidates"])}
-    if said["low"]:
-        numbers.update(low=float(row["p99_error_over_jnd_low"]), high=float(row["p99_error_over_jnd_high"]))
-    if said["best"]:
-        best = said["best"]
-        numbers.update(less=errors["p99_error_over_jnd"] - known[best][0]["p99_error_over_jnd"],
-                       ratio=float(times[best]["tick_ns"]) / float(times[model]["tick_ns"]))
-    for figure, expected in numbers.items():
-        value, half = printed(said[figure])
-        # Shares are rounded down, and a number on the edge may be rounded either way.
-        check.near(f"sentence: {figure}", value, expected, 1.001 * half + (0.0101 if figure == "within" else 0))
-    if model != report["recommended"]:
-        print(f"the sentence recommends {model}, report.json {report['recommended']}")
-        check.wrong += 1
+def check_answer(check, report, known, times):
+    said = re.search(r"(?P<model>\S+): (?P<within>[\d.]+) % of the test is within one JND, a tick takes (?P<tick>\S+) us",
+                     report["answer"])
+    if not said or said["model"] != report["recommended"]:
+        sys.exit("error: the answer of the report is not as expected: " + report["answer"])
+    # Shares are rounded down, and times to two digits.
+    share = 100.0 * known[said["model"]][0]["within_jnd"]
+    check.near("answer: share", float(said["within"]), share - (0.05 if share >= 99.0 else 0.5),
+               0.0501 if share >= 99.0 else 0.501)
+    tick = 1e-3 * float(times[said["model"]]["tick_ns"])
+    check.near("answer: tick", float(said["tick"]), tick, 0.051 * tick)
 
 
 def main():
@@ -220,27 +199,29 @@ def main():
     given = [argument.split("=", 1) for argument in sys.argv[2:]]
     if not given:
         sys.exit("error: no FORCES.csv was given: NAME=FILE for each model of the tables")
-    for name, path in [("no force", given[0][1])] + given:
-        strokes = strokes_of(path, None if name == "no force" else name)
-        known[name] = (figures(strokes), strokes)
-        for key, value in known[name][0].items():
+    for name, paths in [("no force", given[0][1].split(",")[0])] + given:
+        seeds = [strokes_of(path, None if name == "no force" else name) for path in paths.split(",")]
+        each = [figures(strokes) for strokes in seeds]
+        # The bound of the share comes from medians by unit.
+        of_median = {key: median([one[key] for one in each]) for key in each[0] if len(seeds) == 1 or key != "within_at_least"}
+        drawn = [median(draws) for draws in zip(*map(resampled, seeds))] if each[0]["units"] >= LEAST_UNITS else []
+        known[name] = (of_median, drawn)
+        for key, value in of_median.items():
             check.near(f"{name}: {key}", float(rows[name][key]), value, 1e-6 * abs(value) + 1e-12)
-        if name != "no force":
-            check_bins(check, folder, name, strokes)
-    best = min((name for name in report["candidates"] if name in known), key=lambda name: known[name][0]["p99_error_over_jnd"])
-    of_best = resampled(known[best][1])
-    for name, (expected, strokes) in known.items():
+        if name != "no force" and len(seeds) == 1:
+            check_bins(check, folder, name, seeds[0])
+    best, of_best = known[report["best"]]
+    for name, (expected, drawn) in known.items():
         row = rows[name]
-        difference = expected["p99_error_over_jnd"] - known[best][0]["p99_error_over_jnd"]
+        difference = expected["p99_error_over_jnd"] - best["p99_error_over_jnd"]
         check.near(f"{name}: difference", float(row["difference_p99"]), difference, 1e-6)
-        if len(strokes) < LEAST_UNITS:
+        if not drawn:
             continue
-        drawn = resampled(strokes)
         check_interval(check, f"{name}: 99 % error", float(row["p99_error_over_jnd_low"]),
-                       float(row["p99_error_over_jnd_high"]), drawn, len(strokes))
+                       float(row["p99_error_over_jnd_high"]), drawn, expected["units"])
         check_interval(check, f"{name}: difference", float(row["difference_p99_low"]), float(row["difference_p99_high"]),
-                       [one - other for one, other in zip(drawn, of_best)], len(strokes))
-    check_sentence(check, report, known, rows, times)
+                       [one - other for one, other in zip(drawn, of_best)], expected["units"])
+    check_answer(check, report, known, times)
     if not check.wrong:
         print(f"{check.done} numbers agree")
     return 1 if check.wrong else 0
