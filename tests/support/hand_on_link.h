@@ -13,7 +13,7 @@
 #include "devices/link/device_endpoint.h"
 #include "engine/base/random_stream.h"
 #include "engine/live/live_tick.h"
-#include "scenes/hard/closed_loop.h"
+#include "scenes/hard/hard.h"
 
 namespace palpate::test {
 
