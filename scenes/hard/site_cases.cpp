@@ -106,7 +106,9 @@ HardFigures measure(const SiteSet& set, const FittedModel& model) {
   };
   HardFigures figures = measure_at(set.tested);
   // Steps count along the whole path, also where no site determines the force.
-  figures.worst_step_N = measure_at(path()).worst_step_N;
+  const HardFigures along_path = measure_at(path());
+  figures.worst_step_N = along_path.worst_step_N;
+  figures.step_over_N = along_path.step_over_N;
   return figures;
 }
 
