@@ -46,7 +46,7 @@ def identify_sensor(rec):
 
 
 def truncated(e, b):
-    """Mean, 1 - variance, and log of the likelihood of a standard normal variable within b of e."""
+    """Mean and 1 - variance of a standard normal variable within b of e."""
     def density(x):
         return np.exp(-x * x / 2) / np.sqrt(2 * np.pi)
 
@@ -56,21 +56,19 @@ def truncated(e, b):
 
     low, high = abs(e) - b, abs(e) + b
     if low > 5:
-        mean, lost, log = low, 1.0, -low * low / 2
+        mean, lost = low, 1.0
     elif b > 0.02:
         inside = (tail(low) if low >= 0 else 1 - tail(-low)) - tail(high)
         mean = (density(low) - density(high)) / inside
         lost = min(1.0, max(0.0, mean ** 2 - (low * density(low) - high * density(high)) / inside))
-        log = np.log(np.sqrt(np.pi / 2) * inside / b)
     else:
-        mean, lost, log = abs(e), 1 - b * b / 3, -e * e / 2
-    return np.copysign(mean, e), lost, log
+        mean, lost = abs(e), 1 - b * b / 3
+    return np.copysign(mean, e), lost
 
 
 def motion(rec):
     """The estimates p_hat and v at every row."""
     delta, sigma = identify_sensor(rec)
-    J, m, P, pi = np.array([1.0, 130.0]), np.zeros((2, 3)), np.zeros((2, 3, 3)), np.full(2, 0.5)
     R = sigma ** 2 + (0.02 * delta) ** 2 + 1e-18
     last_p, last_t, skipped, started, out = 0.0, 0.0, 0.0, False, []
     for t, p in zip(rec["time_s"], rec["position_m"]):
@@ -83,34 +81,26 @@ def motion(rec):
             out.append(out[-1])
             continue
         if not started or jump or h > 0.25:
-            m[:], pi[:] = 0, 0.5
-            m[:, 0], m[:, 1] = p, 0 if jump or not started else (p - last_p) / h
-            P[:] = np.diag([1e-8, 1e-2, 1.0])
+            m = np.array([p, 0 if jump or not started else (p - last_p) / h, 0])
+            P, N, chi = np.diag([1e-8, 1e-2, 1.0]), 10.0, 0.0
         else:
-            change = 0.5 * min(h / 0.2, 1)
-            mixed = pi + change * (pi[::-1] - pi)
-            w = (change * pi[::-1] / mixed)[:, None, None]
-            d = m[::-1] - m
-            P = P + w * (P[::-1] - P) + w * (1 - w) * d[:, :, None] * d[:, None, :]
-            m, pi = m + w[:, :, 0] * d, mixed
             F = np.array([[1, h, h * h / 2], [0, 1, h], [0, 0, 1]])
             Q = [[h ** 5 / 20, h ** 4 / 8, h ** 3 / 6], [h ** 4 / 8, h ** 3 / 3, h * h / 2], [h ** 3 / 6, h * h / 2, h]]
-            m, P = m @ F.T, F @ P @ F.T + J[:, None, None] * Q
-        repeated, skipped, log = started and p == last_p, 0.0, np.zeros(2)
+            m, P = F @ m, F @ P @ F.T + N * np.array(Q)
+        repeated, skipped = started and p == last_p, 0.0
         last_p, started = p, True
-        share = 1 - np.exp(-h / 1.4427e-3) if repeated and delta > 0 else 1.0
-        for f in range(2):
-            c, R_f = P[f, 0].copy(), R + 1e-10 * P[f, 0, 0]
-            S = c[0] + R_f
-            mean, lost, likelihood = truncated((p - m[f, 0]) / np.sqrt(S), delta / 2 / np.sqrt(S))
-            log[f] += share * (likelihood - np.log(S) / 2)
-            m[f] += share * mean * c / np.sqrt(S)
-            P[f] -= share * lost * np.outer(c, c) / S
-            P[f, 0, 0] = c[0] * ((1 - share * lost) * c[0] + R_f) / S
-        pi = pi * np.exp(log - log.max()) + 1e-6
-        pi /= pi.sum()
+        share = min(1.0, np.sqrt(250 * h)) if repeated and delta > 0 else 1.0
+        c, V = P[0].copy(), R + 1e-10 * P[0, 0]
+        S = c[0] + V
+        mean, lost = truncated((p - m[0]) / np.sqrt(S), delta / 2 / np.sqrt(S))
+        m = m + share * mean * c / np.sqrt(S)
+        P = P - share * lost * np.outer(c, c) / S
+        P[0, 0] = c[0] * ((1 - share * lost) * c[0] + V) / S
+        excess = mean ** 2 - lost
+        N *= 1 + 0.05 * share * (excess if mean * chi > 0 else min(excess, 0))
+        N, chi = min(1000.0, max(1.0, N)), 0.7 * chi + share * mean
         reach = delta / 2 + 3 * sigma
-        out.append((min(p + reach, max(p - reach, pi @ m[:, 0])), pi @ m[:, 1]))
+        out.append((min(p + reach, max(p - reach, m[0])), m[1]))
     return np.array(out)
 
 

@@ -1,30 +1,19 @@
 #include "engine/tick/motion_estimator.h"
 
 namespace palpate {
-namespace {
-
-// `n`: the number of states, a constant so that the compiler unrolls all loops over them.
-template <int n>
-void advance(motion_filter::MotionState& state, const SensorSpec& sensor, const ToolSample& sample,
-             double step_s) noexcept {
-  using motion_filter::measure_motion;
-  using motion_filter::square;
-  const bool repeated = state.started != 0 && sample.position_m == state.position_m;
-  const double h_s = motion_filter::advance_motion(&state, n, step_s, sample.position_m);
-  if (!(h_s > 0.0)) return;
-  if (n == 4) measure_motion(&state, n, 2, 3, sample.acceleration_m_per_s2, square(sensor.acceleration_noise_m_per_s2));
-  if (sensor.has_velocity)
-    measure_motion(&state, n, 1, 1, sample.velocity_m_per_s, square(sensor.velocity_noise_m_per_s));
-  motion_filter::measure_position(&state, n, h_s, repeated, sensor.encoder_step_m, sensor.position_noise_m);
-}
-
-}  // namespace
 
 MotionEstimate MotionEstimator::update(const ToolSample& sample) noexcept {
+  using namespace motion_filter;
   const double step_s = sample.time_s - time_s_;
   if (state_.started != 0 && !(step_s > 0.0)) return estimate();
   time_s_ = sample.time_s;
-  (sensor_.has_acceleration ? advance<4> : advance<3>)(state_, sensor_, sample, step_s);
+  const bool repeated = state_.started != 0 && sample.position_m == state_.position_m;
+  if (sensor_.has_acceleration)
+    measure_acceleration(&state_, sample.acceleration_m_per_s2, sensor_.acceleration_noise_m_per_s2);
+  const double h_s = advance_motion(&state_, step_s, sample.position_m);
+  if (!(h_s > 0.0)) return estimate();
+  if (sensor_.has_velocity) measure_velocity(&state_, sample.velocity_m_per_s, square(sensor_.velocity_noise_m_per_s));
+  measure_position(&state_, h_s, repeated, sensor_.encoder_step_m, sensor_.position_noise_m);
   return estimate();
 }
 

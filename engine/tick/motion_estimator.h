@@ -1,5 +1,5 @@
 // Causal estimates of position and velocity of the tool from quantised positions, with a measured acceleration or
-// velocity if there is one, by two Kalman filters. models/METHOD.md has the equations, motion_filter.inc the code,
+// velocity if there is one, by a Kalman filter. models/METHOD.md has the equations, motion_filter.inc the code,
 // which exported models share. On simulated hands (HandMotion) behind a 30 um encoder the velocity
 // error is 0.54 of that of first-order adaptive windowing at its best settings, and 0.08 of it with an accelerometer
 // (tests/engine/tick/motion_estimator_test.cpp).
@@ -12,19 +12,13 @@
 
 namespace palpate {
 
-// The filters of motion_filter.inc in double precision, with four states.
+// The filter of motion_filter.inc in double precision.
 namespace motion_filter {
 using real = double;
 #define R(x) (x)
 #define SQRT std::sqrt
 #define EXP std::exp
-#define LOG std::log
-#define MOTION_STATES 4
 #include "engine/tick/motion_filter.inc"
-#undef EACH_FILTER
-#undef MOTION_FILTERS
-#undef MOTION_STATES
-#undef LOG
 #undef EXP
 #undef SQRT
 #undef R
@@ -42,7 +36,7 @@ class MotionEstimator {
   void reset() noexcept { state_ = {}; }
 
   // Takes the next sample and returns the estimate. A sample that is not later than the last one is ignored. So are
-  // readings beyond the reach of a hand (20 mm and 10 m/s), for at most 0.1 s; then the filters restart there.
+  // readings beyond the reach of a hand (20 mm and 10 m/s), for at most 0.1 s; then the filter restarts there.
   // The estimated position is within half an encoder step plus three standard deviations of the noise of the reading.
   MotionEstimate update(const ToolSample& sample) noexcept;
   // The last estimate.

@@ -254,7 +254,6 @@ std::string export_c(const ModelData& data, const SensorSpec& sensor, bool singl
   out.define("PALPATE_POSITION_NOISE_M", sensor.position_noise_m);
   out.add("#endif\n\n");
   write_precision(out);
-  out.define("MOTION_STATES", std::size_t{3});
   out.define("FEATURES", data.features.size());
   out.define("SURFACE_POSITION_M", surface_position_m(data.features));
   const FittedModel model(data);
