@@ -11,6 +11,8 @@
 namespace palpate {
 namespace {
 
+// Domain and bounds of the models are determined for every frame of a window.
+constexpr double kAssessed_s = 15.5e-3;
 constexpr std::size_t kWarmUpSamples = 500;
 
 static_assert(static_cast<std::uint32_t>(TickFault::bad_sample) == loop_fault::kBadSample &&
@@ -108,7 +110,13 @@ void LiveTick::process_samples(double now_s) noexcept {
   snapshot_.restarted = false;
   DeviceSample sample;
   for (int i = 0; i < kMaxSamplesPerTick && device_.read(now_s, sample); ++i) process_sample(sample);
-  if (snapshot_.samples > 0) sampled_s_ = now_s;
+  if (snapshot_.samples == 0) return;
+  sampled_s_ = now_s;
+  if (now_s - assessed_s_ < kAssessed_s && !snapshot_.restarted) return;
+  const TickSnapshot& assessed = models_->tick.assess();
+  snapshot_.tick.out_of_domain_mask = assessed.out_of_domain_mask;
+  snapshot_.tick.predicted_error_N = assessed.predicted_error_N;
+  assessed_s_ = now_s;
 }
 
 void LiveTick::process_sample(const DeviceSample& sample) noexcept {

@@ -170,7 +170,8 @@ class LiveTick {
   LoopSnapshot snapshot_;
   std::unique_ptr<RecordedRing> recorded_;  // 2.4 MB: too much for a stack
   double ns_per_cycle_;
-  double sampled_s_ = -std::numeric_limits<double>::infinity();  // time of the tick that read the last sample
+  double sampled_s_ = -std::numeric_limits<double>::infinity();   // time of the tick that read the last sample
+  double assessed_s_ = -std::numeric_limits<double>::infinity();  // of the last HapticsTick::assess
   bool started_ = false;
 };
 

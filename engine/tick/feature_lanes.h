@@ -27,7 +27,7 @@ inline constexpr std::size_t kDriveCoefficients = 4;
 // the results are bit-identical.
 template <typename Number, typename Curve>
 [[gnu::always_inline]] inline void evaluate_curve(Number& value, const Curve& curve, double depth_m) noexcept {
-  const Number u = depth_m / curve.reference_depth_m;
+  const Number u = depth_m * curve.per_reference_m();
   const Number inside = u > 1.0 ? Number{} + 1.0 : u;
   Number sum{};
   for (std::size_t k = kDriveCoefficients; k-- > 0;) sum = (sum + curve.coefficient_N[k]) * inside;
@@ -48,6 +48,7 @@ struct DriveCurve {
     evaluate_curve(value, *this, depth_m);
     return value;
   }
+  double per_reference_m() const noexcept { return 1.0 / reference_depth_m; }
   // Beyond this depth g is linear.
   double least_reference_m() const noexcept { return reference_depth_m; }
   bool operator==(const DriveCurve&) const = default;
@@ -89,11 +90,19 @@ PALPATE_INLINE void to_exponential(V4& x) noexcept {
 // Four drive curves. An unused lane has g = 0.
 struct alignas(sizeof(V4)) CurveLanes {
   V4 coefficient_N[kDriveCoefficients]{};
-  V4 reference_depth_m{1.0, 1.0, 1.0, 1.0};
+  V4 per_reference{1.0, 1.0, 1.0, 1.0};
   double least_m = std::numeric_limits<double>::infinity();  // the smallest of the four reference depths
 
   void set(std::size_t lane, const DriveCurve& drive) noexcept;
+  const V4& per_reference_m() const noexcept { return per_reference; }
   double least_reference_m() const noexcept { return least_m; }
+};
+
+// The exponential of a multiple of 1/128 for each lane, kept from step to step: the argument seldom moves to another
+// multiple, and a short series leads from one to it. Results do not depend on what was kept.
+struct alignas(sizeof(V4)) KeptExponential {
+  V4 at{};
+  V4 value{1.0, 1.0, 1.0, 1.0};
 };
 
 // The largest number of groups of four for the branches or bristles of a filter: 8 features of 8 parts.
@@ -103,10 +112,15 @@ inline constexpr std::size_t kMaxLaneGroups = 16;
 struct alignas(sizeof(V4)) PartMemory {
   V4 value[kMaxLaneGroups];    // the force z of a branch, N; the deflection s or q of a bristle, m
   V4 drive_N[kMaxLaneGroups];  // g(d) of a branch at the same time
+  KeptExponential slowed[kMaxLaneGroups], kept[kMaxLaneGroups];  // of a step of the branches
 };
 
 // The sum of `count` lanes from index `first`.
-double sum_of_lanes(const V4* value, std::size_t first, std::size_t count) noexcept;
+inline double sum_of_lanes(const V4* value, std::size_t first, std::size_t count) noexcept {
+  double sum = 0.0;
+  for (std::size_t i = first; i < first + count; ++i) sum += reinterpret_cast<const double*>(value)[i];
+  return sum;
+}
 
 class BranchLanes {
  public:
@@ -114,8 +128,7 @@ class BranchLanes {
     CurveLanes drive;
     V4 relaxation_time_s{1.0, 1.0, 1.0, 1.0};
     V4 slowing{};  // exponents of the growth of these times with depth
-    V4 slowing_depth_m{1.0, 1.0, 1.0, 1.0};
-    bool slows = false;  // whether one lane has a slowing
+    V4 per_slowing_m{1.0, 1.0, 1.0, 1.0};
   };
   // Returns the index of the branch among the lanes.
   std::size_t add(const DriveCurve& drive, double relaxation_time_s, double slowing = 0.0,
@@ -128,13 +141,14 @@ class BranchLanes {
  private:
   std::vector<Group> groups_;
   std::size_t count_ = 0;
+  bool slows_ = false;  // whether one branch has a slowing
 };
 
 class BristleLanes {
  public:
   struct alignas(sizeof(V4)) Group {
     CurveLanes drive;
-    V4 threshold_m{1.0, 1.0, 1.0, 1.0};
+    V4 per_threshold_m{1.0, 1.0, 1.0, 1.0};
     // The largest deflection: the threshold of a stop, infinite for a creeping bristle.
     V4 limit_m{1.0, 1.0, 1.0, 1.0};
     V4 air_limit_m{};     // the same out of contact: 0 for a stop

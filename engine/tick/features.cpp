@@ -27,6 +27,12 @@ std::string feature_name(const FeatureSpec& spec) {
   return name.append(facts_of(spec.kind).unit);
 }
 
+std::vector<FeaturePart> parts_of(const FeatureSpec& spec) {
+  if (spec.kind == FeatureKind::lowpass_velocity)
+    return {{spec.relaxation_time_s, 0.0, DriveCurve{1.0, {1.0 / spec.relaxation_time_s}}}};
+  return {spec.parts.begin(), spec.parts.begin() + static_cast<std::ptrdiff_t>(spec.part_count)};
+}
+
 std::size_t memory_size(const std::vector<FeatureSpec>& specs) noexcept {
   std::size_t size = 0;
   for (const FeatureSpec& spec : specs) size += has_time(spec.kind) ? 1 : spec.part_count;
@@ -39,13 +45,13 @@ FeaturePlan::FeaturePlan(const std::vector<FeatureSpec>& specs, double deepest_m
   assert(!specs.empty() && specs.size() <= kMaxFeatures);
   for (std::size_t i = 0; i < specs_.size(); ++i) {
     const FeatureSpec& spec = specs_[i];
-    for (std::size_t p = 0; p < spec.part_count; ++p) {
-      const FeaturePart& part = spec.parts[p];
+    const double slowing_depth_m = spec.parts[0].drive.reference_depth_m;
+    for (const FeaturePart& part : parts_of(spec)) {
       const double creep_time_s = spec.kind == FeatureKind::creep ? part.relaxation_time_s : 0.0;
-      const std::size_t lane = is_branch(spec.kind) ? branches_.add(part.drive, part.relaxation_time_s, spec.slowing,
-                                                                    spec.parts[0].drive.reference_depth_m)
-                                                    : bristles_.add(part.drive, part.threshold_m, creep_time_s);
-      if (p == 0) first_lane_[i] = lane;
+      const std::size_t lane = is_bristle(spec.kind)
+                                   ? bristles_.add(part.drive, part.threshold_m, creep_time_s)
+                                   : branches_.add(part.drive, part.relaxation_time_s, spec.slowing, slowing_depth_m);
+      if (lanes_[i]++ == 0) first_lane_[i] = lane;
     }
   }
   for (std::size_t i = 0; i < specs_.size(); ++i)
@@ -54,8 +60,7 @@ FeaturePlan::FeaturePlan(const std::vector<FeatureSpec>& specs, double deepest_m
 
 void FeaturePlan::each_memory(FeatureState& state, const auto& use) const {
   for (std::size_t i = 0; i < specs_.size(); ++i) {
-    if (has_time(specs_[i].kind)) state.vector.values[i] = use(state.vector.values[i]);
-    for (std::size_t lane = first_lane_[i]; lane < first_lane_[i] + specs_[i].part_count; ++lane) {
+    for (std::size_t lane = first_lane_[i]; lane < first_lane_[i] + lanes_[i]; ++lane) {
       V4& group = state.memory.value[lane / kLanes];
       group[lane % kLanes] = use(group[lane % kLanes]);
     }
@@ -115,19 +120,12 @@ void FeaturePlan::update(FeatureState& state, const ToolSample& sample, const Mo
         value = depth_m > 0.0 ? motion.velocity_m_per_s : 0.0;
         break;
       case FeatureKind::lowpass_velocity:
-        if (step_s > 0.0) {
-          const double keep = std::exp(-step_s / spec.relaxation_time_s);
-          value = keep * value + (1.0 - keep) * (depth_m - state.depth_m) / step_s;
-          // Smaller values are set to 0: denormals would slow every later operation.
-          if (std::abs(value) < 1e-30) value = 0.0;
-        }
-        break;
       case FeatureKind::maxwell_spectrum:
-        value = sum_of_lanes(state.memory.value, first_lane_[i], spec.part_count);
+        value = sum_of_lanes(state.memory.value, first_lane_[i], lanes_[i]);
         break;
       case FeatureKind::stops:
       case FeatureKind::creep:
-        value = sum_of_lanes(bristle_N, first_lane_[i], spec.part_count);
+        value = sum_of_lanes(bristle_N, first_lane_[i], lanes_[i]);
         break;
     }
   }
@@ -142,7 +140,7 @@ void FeaturePlan::adopt(FeatureState& state, const FeaturePlan& plan, const Feat
     for (std::size_t k = 0; k < plan.specs_.size(); ++k) {
       if (specs_[i] != plan.specs_[k]) continue;
       state.vector.values[i] = before.vector.values[k];
-      for (std::size_t p = 0; p < specs_[i].part_count; ++p) {
+      for (std::size_t p = 0; p < lanes_[i]; ++p) {
         const std::size_t lane = first_lane_[i] + p, old = plan.first_lane_[k] + p;
         const auto copy = [&](V4* to, const V4* from) {
           to[lane / kLanes][lane % kLanes] = from[old / kLanes][old % kLanes];

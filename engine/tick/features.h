@@ -76,6 +76,9 @@ struct FeatureSpec {
   bool operator==(const FeatureSpec&) const = default;
 };
 
+// The parts of a feature; a low-pass is a branch that is driven by d / tau.
+std::vector<FeaturePart> parts_of(const FeatureSpec& spec);
+
 // The position of the surface: that of the depth feature; 0 without one.
 double surface_position_m(const std::vector<FeatureSpec>& specs) noexcept;
 
@@ -147,7 +150,7 @@ class FeaturePlan {
 
   std::vector<FeatureSpec> specs_;
   std::vector<RecordingEnds> ends_;
-  std::array<std::size_t, kMaxFeatures> first_lane_{};  // of each feature in PartMemory
+  std::array<std::size_t, kMaxFeatures> first_lane_{}, lanes_{};  // of each feature in PartMemory
   BranchLanes branches_;
   BristleLanes bristles_;
   double surface_position_m_ = 0.0, deepest_m_;

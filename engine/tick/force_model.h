@@ -22,15 +22,23 @@ struct ForceEstimate {
 };
 
 // Immutable.
-// Thread guarantee: `evaluate` may run on any thread, also on several at once; it is wait-free, allocates nothing and
-// never throws.
+// Thread guarantee: `force`, `assess` and `evaluate` may run on any thread, also on several at once; they are
+// wait-free, allocate nothing and never throw.
 class ForceModel {
  public:
   virtual ~ForceModel() = default;
 
   // `features`: the values of `features()` in contact, SI units, finite. Returns a force of at most 1.2 x the largest
   // training force, negative only for a material that pulls, at most as strongly as it did in the training.
-  virtual ForceEstimate evaluate(const double* features) const noexcept = 0;
+  virtual double force(const double* features) const noexcept = 0;
+  // Determines domain and bound for `estimate.force_N`, the force of these features. A tick does so only where somebody
+  // reads them, because the search for the nearest data takes longer than the force of a trend.
+  virtual void assess(const double* features, ForceEstimate& estimate) const noexcept = 0;
+  ForceEstimate evaluate(const double* features) const noexcept {
+    ForceEstimate estimate{force(features)};
+    assess(features, estimate);
+    return estimate;
+  }
 
   virtual const std::vector<FeatureSpec>& features() const noexcept = 0;
   // The position of its surface, m; all depths count from there.

@@ -103,7 +103,7 @@ void HapticsTick::rehearse() noexcept {
     FeatureState state = filters_[i].state();
     filters_[i].plan().update(state, next, estimate);
     for (std::size_t k = 0; k < models_.size(); ++k)
-      if (filter_of_[k] == i) sum_N += models_[k]->evaluate(state.vector.values.data()).force_N;
+      if (filter_of_[k] == i) sum_N += models_[k]->force(state.vector.values.data());
   }
   rehearsed_N_ = sum_N;
 }
@@ -142,6 +142,7 @@ void HapticsTick::continue_from(const HapticsTick& before) noexcept {
     }
   }
   evaluate_models();
+  assess();
 }
 
 const TickSnapshot& HapticsTick::step(const ToolSample& sample) noexcept {
@@ -162,12 +163,14 @@ const TickSnapshot& HapticsTick::step(const ToolSample& sample) noexcept {
   snapshot_.fault = TickFault::none;
   snapshot_.time_s = sample.time_s;
   snapshot_.position_m = sample.position_m;
+  const bool was_in_contact = snapshot_.in_contact;
   // Each model has a surface of its own.
   snapshot_.in_contact = filters_.empty() && sample.position_m > 0.0;
   for (const FeatureFilter& one : filters_) snapshot_.in_contact = snapshot_.in_contact || one.vector().in_contact;
   snapshot_.depth_m = std::max(0.0, sample.position_m);
   snapshot_.velocity_m_per_s = motion.velocity_m_per_s;
   evaluate_models();
+  if (!snapshot_.in_contact || !was_in_contact) assess();
   return snapshot_;
 }
 
@@ -186,38 +189,54 @@ void HapticsTick::update_features(const MotionEstimate& motion) noexcept {
 }
 
 void HapticsTick::evaluate_models() noexcept {
-  snapshot_.out_of_domain_mask = 0;
   // The models take turns in being first: the first one after a pause runs with cold caches, and no model should look
   // slower because of its position.
   const std::size_t first = models_.empty() ? 0 : static_cast<std::size_t>(snapshot_.tick % models_.size());
   for (std::size_t k = 0; k < models_.size(); ++k) {
     const std::size_t i = first + k < models_.size() ? first + k : first + k - models_.size();
-    double force_N = 0.0, predicted_error_N = 0.0;
-    if (snapshot_.in_contact) {
-      const std::uint64_t before = timed_ ? cycle_count() : 0;
-      const FeatureVector& vector = filters_[filter_of_[i]].vector();
-      const ForceEstimate estimate = models_[i]->evaluate(vector.values.data());
-      if (timed_) cycles_[i] = cycle_count() - before;
-      // The surface of the model may be deeper than position 0.
-      force_N = vector.in_contact ? estimate.force_N : 0.0;
-      double unknown_N = 0.0;  // by the unknown memory of the material
-      if (const ExtremeStates& extremes = extremes_[filter_of_[i]]; extremes.unknown) {
-        for (const FeatureState& state : extremes.states) {
-          const double other_N = models_[i]->evaluate(state.vector.values.data()).force_N;
-          unknown_N = std::max(unknown_N, std::abs(other_N - estimate.force_N));
-        }
-      }
-      predicted_error_N = estimate.predicted_error_N + unknown_N;
-      if (vector.in_contact && estimate.out_of_domain) snapshot_.out_of_domain_mask |= 1U << i;
-      if (!std::isfinite(force_N)) {
-        force_N = 0.0;
-        snapshot_.fault = TickFault::force_not_finite;
+    const FeatureVector& vector = filters_[filter_of_[i]].vector();
+    double& force_N = snapshot_.force_N[i];
+    force_N = 0.0;
+    if (!vector.in_contact) continue;  // the surface of a model may be deeper than that of another
+    const std::uint64_t before = timed_ ? cycle_count() : 0;
+    force_N = models_[i]->force(vector.values.data());
+    if (timed_) cycles_[i] = cycle_count() - before;
+    if (std::isfinite(force_N)) continue;
+    force_N = 0.0;
+    snapshot_.fault = TickFault::force_not_finite;
+  }
+}
+
+ForceEstimate HapticsTick::assessed(std::size_t index) const noexcept {
+  if (!started_) return {};
+  const ForceModel& model = *models_[index];
+  const FeatureState& state = filters_[filter_of_[index]].state();
+  ForceEstimate estimate{snapshot_.force_N[index], false, 0.0};
+  if (snapshot_.in_contact) {
+    model.assess(state.vector.values.data(), estimate);
+    // The unknown memory of the material.
+    double unknown_N = 0.0;
+    if (const ExtremeStates& extremes = extremes_[filter_of_[index]]; extremes.unknown) {
+      for (const FeatureState& other : extremes.states) {
+        const double other_N = model.force(other.vector.values.data());
+        unknown_N = std::max(unknown_N, std::abs(other_N - estimate.force_N));
       }
     }
-    if (filters_[filter_of_[i]].state().depth_m < models_[i]->shallowest_m()) snapshot_.out_of_domain_mask |= 1U << i;
-    snapshot_.force_N[i] = force_N;
-    snapshot_.predicted_error_N[i] = predicted_error_N;
+    estimate.predicted_error_N += unknown_N;
+    estimate.out_of_domain = estimate.out_of_domain && state.vector.in_contact;
   }
+  estimate.out_of_domain = estimate.out_of_domain || state.depth_m < model.shallowest_m();
+  return estimate;
+}
+
+const TickSnapshot& HapticsTick::assess() noexcept {
+  snapshot_.out_of_domain_mask = 0;
+  for (std::size_t i = 0; i < models_.size(); ++i) {
+    const ForceEstimate estimate = assessed(i);
+    snapshot_.predicted_error_N[i] = estimate.predicted_error_N;
+    if (estimate.out_of_domain) snapshot_.out_of_domain_mask |= 1U << i;
+  }
+  return snapshot_;
 }
 
 }  // namespace palpate

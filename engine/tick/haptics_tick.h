@@ -44,9 +44,10 @@ struct TickSnapshot {
   bool in_contact = false;        // beyond the surface of at least one model
   TickFault fault = TickFault::none;
   std::uint32_t model_count = 0;
-  std::uint32_t out_of_domain_mask = 0;  // bit i: model i
   std::array<double, kMaxModels> force_N{};
-  // 95 % bounds on the errors of the forces; NaN if a model has none, 0 while `in_contact` is false.
+  // Of the last HapticsTick::assess: a sample out of contact and the first one in contact are always assessed.
+  // Bit i: model i. 95 % bounds on the errors of the forces; NaN if a model has none, 0 while `in_contact` is false.
+  std::uint32_t out_of_domain_mask = 0;
   std::array<double, kMaxModels> predicted_error_N{};
 };
 static_assert(std::is_trivially_copyable_v<TickSnapshot>);
@@ -88,6 +89,10 @@ class HapticsTick {
   int began(std::size_t index) const noexcept { return filters_[filter_of_[index]].state().began; }
 
   const TickSnapshot& step(const ToolSample& sample) noexcept;
+  // Domain and bound of model `index` at the last sample, NaN before the first; or of all models, into the snapshot.
+  // For whoever reads them: a tick needs neither. Wait-free; forces and memory do not change.
+  ForceEstimate assessed(std::size_t index) const noexcept;
+  const TickSnapshot& assess() noexcept;
 
   // Computes a step 1 ms after the last sample, evaluates the models even out of contact, and discards the result, so
   // that code and data of the next step are in the caches. Wait-free; the state does not change.
@@ -97,11 +102,11 @@ class HapticsTick {
   void recall(const MotionHistory& history) noexcept;
 
   // Continues from the state of `before`: takes over the motion estimate and the memory of equal features; the snapshot
-  // is evaluated with these models. A new feature has the memory of the recalled motion if that ended less than 5 s
-  // ago, otherwise it is at rest at the last sample. Requires the same sensor. Wait-free.
+  // is evaluated and assessed with these models. A new feature has the memory of the recalled motion if that ended less
+  // than 5 s ago, otherwise it is at rest at the last sample. Requires the same sensor. Wait-free.
   void continue_from(const HapticsTick& before) noexcept;
 
-  // Slow side: from now on `step` measures the time of each evaluation in units of engine/base/cycle_clock.h, which
+  // Slow side: from now on `step` measures the time of each force in units of engine/base/cycle_clock.h, which
   // takes some 10 ns each.
   void time_evaluations(bool timed) noexcept { timed_ = timed; }
   // The duration of the last evaluation of model `index`; 0 before the first. Out of contact it does not change.

@@ -55,7 +55,8 @@ ReplaySummary replay(const Recording& recording, const ForceModels& models, cons
   for (const RecordingRow& row : rows) {
     ToolSample sample = tool_sample(row);
     sample.position_m -= surface_offset_m;
-    TickSnapshot snapshot = tick.step(sample);
+    tick.step(sample);
+    TickSnapshot snapshot = tick.assess();
     snapshot.in_contact = sample.position_m > surface_m || std::abs(row.force_N) > least_N;
     ++summary.samples;
     if (snapshot.in_contact) ++summary.contact_samples;

@@ -134,7 +134,7 @@ double share_within_jnd(const PreparedTraining& prepared, const ModelData& data)
   for (std::size_t i = 0; i < samples.contact.size(); i += samples.contact.size() / 100000 + 1) {
     const Eigen::VectorXd x = prepared.features.col(static_cast<Eigen::Index>(i));
     const double measured_N = samples.rows[samples.contact[i]].force_N;
-    if (data.jnd.error_over_jnd(model.evaluate(x.data()).force_N, measured_N) <= 1.0) within += 1.0;
+    if (data.jnd.error_over_jnd(model.force(x.data()), measured_N) <= 1.0) within += 1.0;
     count += 1.0;
   }
   return within / count;

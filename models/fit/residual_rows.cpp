@@ -178,7 +178,7 @@ void ResidualRows::find_distances() {
     for (std::size_t i = 0; i < fold.size(); ++i) {
       if (fold[i] != mine) continue;
       const Eigen::VectorXd point = points.col(static_cast<Eigen::Index>(i));
-      distance[i] = std::sqrt(nearest.nearest_squared(point.data()));
+      distance[i] = std::sqrt(nearest.squared(point.data()));
     }
   });
 }

@@ -78,7 +78,6 @@ struct palpate_stream {
   bool accepted = false;  // the last sample
   bool restarted = true;  // no sample yet
   double step_s = 0.0;    // to the last accepted sample; 0: it is the first, or the times jumped
-  double predicted_error_N = palpate::library::kNone;  // at the last accepted sample
 
  private:
   void look_for_jump(double time_s) noexcept;
@@ -109,7 +108,7 @@ void palpate_stream::reset() noexcept {
   accepted = false;
   restarted = true;
   step_s = 0.0;
-  predicted_error_N = last_s_ = before_jump_s_ = jumped_s_ = refused_s_ = palpate::library::kNone;
+  last_s_ = before_jump_s_ = jumped_s_ = refused_s_ = palpate::library::kNone;
 }
 
 // A jump of the times may be an error of some stamps, so that the state before it is kept. Where the old times continue
@@ -141,7 +140,6 @@ void palpate_stream::take(const palpate::ToolSample& sample) noexcept {
   if (!accepted) return;
   step_s = sample.time_s > last_s_ ? sample.time_s - last_s_ : 0.0;
   last_s_ = sample.time_s;
-  predicted_error_N = after.predicted_error_N[0];
 }
 
 namespace palpate::library {
@@ -383,7 +381,7 @@ int palpate_stream_replay(palpate_stream* stream, const palpate_recording* motio
         palpate_stream_force_with_motion(stream, motion->time_s[i], motion->position_m[i],
                                          at(motion->velocity_m_per_s, i), at(motion->acceleration_m_per_s2, i));
     if (force_N != nullptr) force_N[i] = force;
-    if (bound_N != nullptr) bound_N[i] = stream->predicted_error_N;
+    if (bound_N != nullptr) bound_N[i] = palpate_stream_predicted_error(stream);
     if (features != nullptr) std::copy_n(stream->tick().features_of(0).values.data(), width, features + i * width);
   }
   return 0;
@@ -392,11 +390,11 @@ int palpate_stream_replay(palpate_stream* stream, const palpate_recording* motio
 int palpate_stream_accepted(const palpate_stream* stream) { return stream != nullptr && stream->accepted ? 1 : 0; }
 
 int palpate_stream_out_of_domain(const palpate_stream* stream) {
-  return stream != nullptr && (stream->tick().snapshot().out_of_domain_mask & 1U) != 0 ? 1 : 0;
+  return stream != nullptr && stream->tick().assessed(0).out_of_domain ? 1 : 0;
 }
 
 double palpate_stream_predicted_error(const palpate_stream* stream) {
-  return stream == nullptr ? std::numeric_limits<double>::quiet_NaN() : stream->predicted_error_N;
+  return stream == nullptr ? kNone : stream->tick().assessed(0).predicted_error_N;
 }
 
 void palpate_limits_default(palpate_limits* limits) {

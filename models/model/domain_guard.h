@@ -9,7 +9,8 @@
 
 #include <Eigen/Core>
 #include <array>
-#include <vector>
+#include <atomic>
+#include <cstdint>
 
 #include "engine/tick/features.h"
 #include "models/model/vector_loops.h"
@@ -29,59 +30,40 @@ double trust_at_distance(double distance, double inner_radius, double outer_radi
 // Thins `sites` (d x N, N >= 1) to a cover of at most kMaximumCoverPoints points.
 DomainCover make_cover(const Eigen::MatrixXd& sites);
 
-// The distance of a query to the nearest of a set of points.
+// The distance of a query to the nearest of a set of points, which are in cells. A query first examines the cell of the
+// last one, so that one in a stream of ticks seldom examines another; the result does not depend on that.
 class NearestDistance {
  public:
   // `points`: d x N, d from 1 to kMaxFeatures, N >= 1.
   explicit NearestDistance(const Eigen::MatrixXd& points);
 
-  // min_i |x - point_i|^2, O(N); infinite when x is not finite or has a coordinate beyond 1e19.
-  double nearest_squared(const double* x) const noexcept;
-  // Whether a point is within the distance whose square is `squared`. `rounded`: x by nearest_float (vector_loops.h).
-  bool within(const float* rounded, float squared) const noexcept {
-    return loops_.within(rows_.data(), static_cast<std::size_t>(rows_.rows()), rounded, squared);
-  }
+  // min_i |x - point_i|^2, or 0 if that is at most `enough`; infinite when x is not finite or has a coordinate beyond
+  // 1e19. O(N) at worst.
+  double squared(const double* x, float enough = -1.0F) const noexcept;
 
  private:
-  Eigen::MatrixXf rows_;  // one column for each coordinate, padded
-  simd::Loops loops_;
+  std::size_t dimension_;
+  Eigen::MatrixXf points_, low_, high_;  // of simd::Cells
+  decltype(simd::Loops::nearest) nearest_ = nullptr;
+  mutable std::atomic<std::uint32_t> last_cell_{0};  // a hint
 };
 
-// The trust around a cover. A query examines the points of one leaf of a tree of five median splits; if none of them is
-// within the inner radius, it examines all points, so the result does not depend on the tree. Nearly all queries of a
-// tick end in their leaf. O(points) at worst.
+// The trust around a cover.
 class DomainGuard {
  public:
   explicit DomainGuard(const DomainCover& cover);
 
   // `x`: d normalised values. Returns g in [0, 1]; 0 when x is not finite.
-  double trust(const double* x) const noexcept { return trust_at(squared_distance(x, leaf(x))); }
-
-  // The squared distance to the cover; infinite when x is not finite. Within the inner radius, where the trust is 1 and
-  // the error bound does not grow, it may be 0. There are two steps, so that the tick can do other work in between.
-  struct Leaf {
-    std::array<float, kMaxFeatures> rounded;  // x
-    const NearestDistance* points;
-  };
-  Leaf leaf(const double* x) const noexcept {
-    Leaf leaf;
-    leaf.points = &leaves_[leaf_(splits_, x, leaf.rounded.data())];
-    return leaf;
-  }
-  double squared_distance(const double* x, const Leaf& leaf_of_x) const noexcept {
-    return leaf_of_x.points->within(leaf_of_x.rounded.data(), near_squared_) ? 0.0 : all_.nearest_squared(x);
-  }
+  double trust(const double* x) const noexcept { return trust_at(squared_distance(x)); }
+  // The squared distance to the cover; 0 within the inner radius, where the trust is 1 and the error bound does not
+  // grow; infinite when x is not finite.
+  double squared_distance(const double* x) const noexcept { return points_.squared(x, near_squared_); }
   double trust_at(double squared_distance) const noexcept;
 
  private:
-  void split(const Eigen::MatrixXd& points, std::vector<Eigen::Index> part, std::size_t node);
-
-  double inner_radius_ = 0.0, outer_radius_ = 0.0;
-  float near_squared_ = 0.0F;  // at most the square of the inner radius
-  NearestDistance all_;
-  simd::Splits splits_;
-  std::vector<NearestDistance> leaves_;
-  decltype(simd::Loops::leaf) leaf_ = nullptr;
+  double inner_radius_, outer_radius_;
+  float near_squared_;  // at most the square of the inner radius
+  NearestDistance points_;
 };
 
 }  // namespace palpate

@@ -3,7 +3,7 @@
 // T: the trend (models/model/trend.h). h: the correction (models/model/correction.h): eq. 2 of Hoever & Harders (2009),
 // a grid of its values, or none. g: the trust (models/model/domain_guard.h). Out of its domain a model is thus the
 // trend: continuous, bounded, and attracting the tool at most as much as the material did. A model of the measured
-// force has T = 0 and g = 1 everywhere. Thread guarantee: FittedModel is immutable; `evaluate` as in ForceModel.
+// force has T = 0 and g = 1 everywhere. Thread guarantee: FittedModel is immutable; evaluation as in ForceModel.
 #pragma once
 
 #include <Eigen/Core>
@@ -123,7 +123,8 @@ class FittedModel final : public ForceModel {
   // `data`: from a fit or a file, with sizes that match.
   explicit FittedModel(ModelData data);
 
-  ForceEstimate evaluate(const double* features) const noexcept override;
+  double force(const double* features) const noexcept override;
+  void assess(const double* features, ForceEstimate& estimate) const noexcept override;
   const std::vector<FeatureSpec>& features() const noexcept override { return data_.features; }
   // The greatest depth in the domain; a greater one is out of it at any distance from the data. Infinite without a
   // depth feature.
@@ -139,13 +140,19 @@ class FittedModel final : public ForceModel {
   std::size_t depth_feature() const noexcept { return depth_; }
 
  private:
+  std::array<double, kMaxFeatures> normalised(const double* features) const noexcept {
+    std::array<double, kMaxFeatures> u;
+    for (std::size_t i = 0; i < dimension_; ++i) u[i] = (features[i] - offset_[i]) * inverse_scale_[i];
+    return u;
+  }
+
   ModelData data_;
   TrendInputs trend_inputs_;
   DomainGuard guard_;
   std::size_t dimension_ = 0;
   std::size_t depth_ = 0;
   double deepest_m_ = std::numeric_limits<double>::infinity(), shallowest_m_ = 0.0;
-  bool trusts_everywhere_ = false;  // no distance to the data is needed
+  bool trusts_everywhere_ = false;
   std::array<double, kMaxFeatures> offset_{};
   std::array<double, kMaxFeatures> inverse_scale_{};
 };

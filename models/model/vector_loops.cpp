@@ -124,77 +124,58 @@ void column(const Points& points, size_t count, const double* centre, double* ou
 using Floats = hn::CappedTag<float, kSimdPadFloat>;
 
 template <int kDimension>
-HWY_INLINE hn::Vec<Floats> smallest_squared(const float* coordinates, size_t count, const float* x) {
+HWY_INLINE float nearest_of_cell(const float* points, const Broadcast<kDimension, Floats>& x) {
   const Floats d;
-  const Broadcast<kDimension, Floats> query(d, x);
-  hn::Vec<Floats> smallest = hn::Set(d, std::numeric_limits<float>::infinity());
-  for (size_t i = 0; i < count; i += kSimdPadFloat)
-    for (size_t k = i; k < i + kSimdPadFloat; k += hn::Lanes(d))
-      smallest = hn::Min(squared_distance<kDimension>(d, coordinates + k, count, query), smallest);
+  hn::Vec<Floats> smallest = squared_distance<kDimension>(d, points, kCellPoints, x);
+  for (size_t i = hn::Lanes(d); i < kCellPoints; i += hn::Lanes(d))
+    smallest = hn::Min(squared_distance<kDimension>(d, points + i, kCellPoints, x), smallest);
+  return hn::GetLane(hn::MinOfLanes(d, smallest));
+}
+
+// |x - box|^2 of the next boxes from `first` on. Each step rounds monotonically, so that it does not exceed the
+// squared_distance of a point in the box.
+template <int kDimension>
+HWY_INLINE hn::Vec<Floats> squared_to_boxes(const Cells& cells, size_t first, const Broadcast<kDimension, Floats>& x) {
+  const Floats d;
+  hn::Vec<Floats> sum = hn::Zero(d);
+  for (size_t k = 0; k < kDimension; ++k) {
+    const auto below = hn::Sub(hn::LoadU(d, cells.low + k * cells.padded + first), x.coordinate[k]);
+    const auto above = hn::Sub(x.coordinate[k], hn::LoadU(d, cells.high + k * cells.padded + first));
+    const auto outside = hn::Max(hn::Max(below, above), hn::Zero(d));
+    sum = k == 0 ? hn::Mul(outside, outside) : hn::MulAdd(outside, outside, sum);
+  }
+  return sum;
+}
+
+template <int kDimension>
+float nearest(const Cells& cells, const float* query, float enough, uint32_t& cell) noexcept {
+  const Floats d;
+  const Broadcast<kDimension, Floats> x(d, query);
+  float smallest = nearest_of_cell<kDimension>(cells.points + cell * kDimension * kCellPoints, x);
+  const uint32_t last = cell;
+  for (size_t first = 0; first < cells.padded && !(smallest <= enough); first += hn::Lanes(d)) {
+    const auto squared = squared_to_boxes<kDimension>(cells, first, x);
+    if (hn::AllFalse(d, hn::Lt(squared, hn::Set(d, smallest)))) continue;
+    HWY_ALIGN float box[kSimdPadFloat];
+    hn::Store(squared, d, box);
+    for (size_t i = 0; i < hn::Lanes(d); ++i) {
+      const auto other = static_cast<uint32_t>(first + i);
+      if (!(box[i] < smallest) || other == last) continue;
+      const float here = nearest_of_cell<kDimension>(cells.points + other * kDimension * kCellPoints, x);
+      if (!(here < smallest)) continue;
+      smallest = here;
+      cell = other;
+    }
+  }
   return smallest;
 }
-
-template <int kDimension>
-float nearest(const float* coordinates, size_t count, const float* x) noexcept {
-  return hn::GetLane(hn::MinOfLanes(Floats(), smallest_squared<kDimension>(coordinates, count, x)));
-}
-
-template <int kDimension>
-bool within(const float* coordinates, size_t count, const float* x, float squared) noexcept {
-  const Floats d;
-  return !hn::AllFalse(d, hn::Le(smallest_squared<kDimension>(coordinates, count, x), hn::Set(d, squared)));
-}
-
-#if HWY_MAX_BYTES >= 32
-using Four = hn::FixedTag<float, 4>;
-
-// kCount coordinates, rounded like nearest_float.
-template <int kCount>
-HWY_INLINE hn::Vec<Four> four_of(const double* x) {
-  const hn::FixedTag<double, 4> d;
-  const Four four;
-  // Sets the lanes one at a time: a vector load of values that were stored one by one would wait for the stores.
-  const auto at = [&](int k) HWY_ATTR { return k < kCount ? hn::Set(d, x[k]) : hn::Zero(d); };
-  const auto q = hn::DemoteTo(four, hn::ConcatUpperLower(d, hn::OddEven(at(3), at(2)), hn::OddEven(at(1), at(0))));
-  return hn::IfThenZeroElse(hn::Lt(hn::Abs(q), hn::Set(four, kSmallestFloat)), q);
-}
-
-// Compares all splits at once, then follows the bits: one comparison after the other would take three times as long.
-template <int kDimension>
-size_t leaf_of(const Splits& splits, const double* x, float* rounded) noexcept {
-  const hn::FixedTag<float, 8> eight;
-  const auto low = four_of<std::min(kDimension, 4)>(x);
-  auto all = hn::ZeroExtendVector(eight, low);
-  if constexpr (kDimension > 4) all = hn::Combine(eight, four_of<kDimension - 4>(x + 4), low);
-  hn::StoreU(all, eight, rounded);
-  uint32_t bits = 0;
-  for (size_t i = 0; i < kLeaves; i += 8) {
-    const auto its = hn::TableLookupLanes(all, hn::SetTableIndices(eight, splits.coordinate.data() + i));
-    uint8_t bytes[8] = {};
-    hn::StoreMaskBits(eight, hn::Ge(its, hn::LoadU(eight, splits.at.data() + i)), bytes);
-    bits |= uint32_t{bytes[0]} << i;
-  }
-  uint32_t node = 0;
-  for (size_t level = 0; level < kSplitLevels; ++level) node = 2 * node + 1 + (bits >> node & 1U);
-  return node + 1 - kLeaves;
-}
-#else
-template <int kDimension>
-size_t leaf_of(const Splits& splits, const double* x, float* rounded) noexcept {
-  for (int k = 0; k < kDimension; ++k) rounded[k] = nearest_float(x[k]);
-  size_t node = 0;
-  for (size_t level = 0; level < kSplitLevels; ++level)
-    node = 2 * node + 1 + (rounded[splits.coordinate[node]] >= splits.at[node] ? 1 : 0);
-  return node + 1 - kLeaves;
-}
-#endif
 
 // The loops of kernel k and dimension d + 1 are at index 8 k + d.
 template <int... kIndex>
 Loops pick(size_t index, std::integer_sequence<int, kIndex...>) {
   static constexpr Loops kTable[] = {{&evaluate<static_cast<KernelKind>(kIndex / 8), kIndex % 8 + 1>,
                                       &column<static_cast<KernelKind>(kIndex / 8), kIndex % 8 + 1>,
-                                      &nearest<kIndex % 8 + 1>, &within<kIndex % 8 + 1>, &leaf_of<kIndex % 8 + 1>}...};
+                                      &nearest<kIndex % 8 + 1>}...};
   return kTable[index];
 }
 

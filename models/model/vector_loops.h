@@ -3,7 +3,6 @@
 // coordinates[k * stride + i]. Loads are fast because CMakeLists.txt lets Eigen align to 64 bytes.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -47,13 +46,13 @@ inline float nearest_float(double value) noexcept {
 // Whether the square of a value fits a float; false for NaN.
 inline bool in_nearest_range(double value) noexcept { return value < 1e19 && value > -1e19; }
 
-// A binary tree. At split i a query with x[coordinate[i]] < at[i] continues at split 2 i + 1, else at 2 i + 2; the
-// splits of the last level lead to the leaves, which are numbered from left to right.
-inline constexpr std::size_t kSplitLevels = 5;
-inline constexpr std::size_t kLeaves = std::size_t{1} << kSplitLevels;
-struct Splits {
-  std::array<std::int32_t, kLeaves> coordinate{};  // the last element is unused
-  std::array<float, kLeaves> at{};
+// Points in cells of kCellPoints, each with the box of its points.
+inline constexpr std::size_t kCellPoints = 32;
+struct Cells {
+  const float* points = nullptr;  // coordinate k of point i of cell c: points[(c * dimension + k) * kCellPoints + i]
+  const float* low = nullptr;     // the boxes; coordinate k of cell c: low[k * padded + c]
+  const float* high = nullptr;
+  std::size_t padded = 0;  // a multiple of kSimdPadFloat, reached with boxes at an infinite distance
 };
 
 // ---- the loops ----
@@ -65,12 +64,9 @@ struct Loops {
   double (*evaluate)(const Points& points, const double* weights, const double* tail, const double* x) noexcept;
   // out[i] = phi(|point_i - centre|) for i < count.
   void (*column)(const Points& points, std::size_t count, const double* centre, double* out) noexcept;
-  // min_i |x - point_i|^2 of `count` points, a multiple of kSimdPadFloat and their stride.
-  float (*nearest)(const float* coordinates, std::size_t count, const float* x) noexcept;
-  // Whether one of these points is within the distance whose square is `squared`; false when x is not finite.
-  bool (*within)(const float* coordinates, std::size_t count, const float* x, float squared) noexcept;
-  // The number of the leaf of x. `rounded`: receives the nearest_float of each coordinate; has room for 8.
-  std::size_t (*leaf)(const Splits& splits, const double* x, float* rounded) noexcept;
+  // The smallest |x - point|^2, or any one that is at most `enough`. Examines the points of `cell` first, then those of
+  // each cell whose box is nearer than the nearest point so far; `cell` receives the cell of the result.
+  float (*nearest)(const Cells& cells, const float* x, float enough, std::uint32_t& cell) noexcept;
 };
 // On the selected instruction set. `dimension`: 1 to 8.
 Loops loops(int dimension, KernelKind kernel = KernelKind::cubic);

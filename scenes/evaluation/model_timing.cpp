@@ -59,7 +59,7 @@ Round time_round(const ModelPointer& model, const std::vector<TimedSamples>& str
     add_blocks(features.size(), round.evaluation_ns, [&](std::size_t i) {
       std::array<double, kMaxFeatures> x = features[i];
       x[0] += 0.0 * force_N;  // adds 0; each call depends on the last, as in the tick
-      force_N = model->evaluate(x.data()).force_N;
+      force_N = model->force(x.data());
     });
   }
   // The forces must be used, or the compiler may remove the calls.

@@ -23,7 +23,7 @@ ForceErrors errors_of(const ForceModel& model, const std::vector<Sample>& rows, 
     sample.position_m -= offset_m;
     motion.position_m -= offset_m;
     const FeatureVector& vector = filter.update(sample, motion);
-    const double force_N = vector.in_contact ? model.evaluate(vector.values.data()).force_N : 0.0;
+    const double force_N = vector.in_contact ? model.force(vector.values.data()) : 0.0;
     errors[i] = force_N - rows[i].force_N;
   }
   return errors;

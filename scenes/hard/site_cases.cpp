@@ -94,7 +94,7 @@ SamplesPointer samples_of(const SiteSet& set) {
 HardFigures measure(const SiteSet& set, const FittedModel& model) {
   const auto force_at = [&](double u, double v) {
     const double features[] = {depth_m(set, u), velocity_m_per_s(set, v)};
-    return model.evaluate(features).force_N;
+    return model.force(features);
   };
   const auto measure_at = [&](const Points& points) {
     HardMeasure measured;

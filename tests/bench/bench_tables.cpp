@@ -28,7 +28,7 @@ constexpr Goal kGoals[] = {
     {"greedy-100, 100 candidates", "fit/greedy-100_of_100", "41 min", "0.15 s"},
     {"greedy-100, all sites", "fit/greedy-100_of_all", "-", "1.4 s"},
     {"direct + 25x11x11x11 grid", "fit/direct+grid", "50 min", "1.3 s"},
-    {"whole tick in replay, greedy-100", "tick/whole_greedy", "-", "0.5 us"},
+    {"whole tick in replay, greedy-100", "tick/silicone/greedy", "-", "0.5 us"},
     {"`fit` random, the program", "program/fit_random", "-", "90 ms"},
     {"`fit` greedy, the program", "program/fit_greedy", "-", "0.25 s"},
 };

@@ -55,7 +55,7 @@ void whole_model(benchmark::State& state, const Method* method) {
   const Result<MethodFit> fit = fit_method(recorded(), {.method = method, .features = FeatureChoice::scene});
   if (!fit) return state.SkipWithError(fit.error().message.c_str());
   const FittedModel model(fit->data);
-  run_queries(state, recorded().features, [&](const double* x) { return model.evaluate(x).force_N; });
+  run_queries(state, recorded().features, [&](const double* x) { return model.force(x); });
 }
 
 void prepare(benchmark::internal::Benchmark* one) {

@@ -24,6 +24,7 @@ class NamedModel : public ForceModel {
   const std::string& name() const noexcept override { return name_; }
   const std::string& method() const noexcept override { return name_; }
   int centre_count() const noexcept override { return 0; }
+  void assess(const double*, ForceEstimate&) const noexcept override {}
 
  protected:
   explicit NamedModel(std::string name, std::vector<FeatureSpec> features = {FeatureSpec{}})
@@ -39,9 +40,7 @@ class SpringModel final : public NamedModel {
  public:
   explicit SpringModel(double stiffness_N_per_m, std::vector<FeatureSpec> features = {FeatureSpec{}})
       : NamedModel("spring", std::move(features)), stiffness_N_per_m_(stiffness_N_per_m) {}
-  ForceEstimate evaluate(const double* features) const noexcept override {
-    return {stiffness_N_per_m_ * features[0], false};
-  }
+  double force(const double* features) const noexcept override { return stiffness_N_per_m_ * features[0]; }
 
  private:
   double stiffness_N_per_m_;
@@ -55,9 +54,9 @@ inline std::shared_ptr<const ForceModel> spring(double stiffness_N_per_m) {
 class CountingModel final : public NamedModel {
  public:
   CountingModel() : NamedModel("counting") {}
-  ForceEstimate evaluate(const double*) const noexcept override {
+  double force(const double*) const noexcept override {
     ++evaluations_;
-    return {};
+    return 0.0;
   }
   std::uint64_t evaluations() const { return evaluations_; }
 

@@ -302,14 +302,16 @@ TEST_F(LibraryC, ARepeatedSampleIsHeldAndNoneChangesTheForceByMoreThan2NInAMilli
     loop.press();
     const double before_N = loop.call();
     ASSERT_GT(before_N, 0.2);
-    double last_N = before_N, least_N = before_N;
+    double last_N = before_N, calm_N = before_N, least_N = before_N;
+    // The force follows the steps of the encoder up and down.
+    for (int i = 0; i < 100; ++i) calm_N = std::min(calm_N, last_N = loop.call());
     for (int i = 0; i < bad + 50; ++i) {
       const double force_N = i < bad ? loop.call(std::pair{bad_s == 0.0 ? loop.time_s : bad_s, bad_m}) : loop.call();
       ASSERT_LE(std::abs(force_N - last_N), 2.0 + 1e-9) << i;
       least_N = std::min(least_N, force_N);
       last_N = force_N;
     }
-    EXPECT_EQ(least_N > 0.9 * before_N, held) << bad << " " << bad_s << " " << bad_m;
+    EXPECT_EQ(least_N > 0.9 * calm_N, held) << bad << " " << bad_s << " " << bad_m;
     for (int i = 0; i < 1000; ++i) last_N = loop.call();
     EXPECT_GT(last_N, 0.5 * before_N) << "with a ramp";
   }
