@@ -30,8 +30,8 @@ constexpr double kEncoder_m = 10e-6;
 class Surface final : public NamedModel {
  public:
   Surface(double stiffness_N_per_m, bool hardens) : NamedModel("surface"), k_(stiffness_N_per_m), hardens_(hardens) {}
-  ForceEstimate evaluate(const double* features) const noexcept override {
-    return {k_ * features[0] * (hardens_ ? 1.0 + features[0] / 2e-3 : 1.0), false};
+  double force(const double* features) const noexcept override {
+    return k_ * features[0] * (hardens_ ? 1.0 + features[0] / 2e-3 : 1.0);
   }
 
  private:
