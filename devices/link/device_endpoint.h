@@ -196,6 +196,7 @@ class StreamMonitor {
   double arrivals_s_[3] = {-1e9, -1e9, -1e9};  // of the last three untimed readings, newest first
   double still_since_s_ = 0.0;                 // the last change of a count
   double least_N_ = 0.0, most_N_ = 0.0;        // of the force since then
+  bool pushed_ = false;                        // at the last sample
   bool stuck_ = false;
   bool late_ = false;
   double hold_s_ = kHold_s;        // of the present fault

@@ -114,10 +114,11 @@ void StreamMonitor::move(const DeviceReading& reading, double now_s) noexcept {
 // force is no evidence.
 void StreamMonitor::watch_stuck(double now_s, double force_N) noexcept {
   const bool pushing = std::abs(force_N) >= kPushing_N;
-  if (!pushing || still_since_s_ == now_s) least_N_ = most_N_ = force_N;
+  if (!pushing || !pushed_ || still_since_s_ == now_s) least_N_ = most_N_ = force_N;
+  pushed_ = pushing;
   least_N_ = std::min(least_N_, force_N);
   most_N_ = std::max(most_N_, force_N);
-  const bool evident = std::abs(force_N) >= kFirm_N || most_N_ - least_N_ >= kPushing_N;
+  const bool evident = pushing && (std::abs(force_N) >= kFirm_N || most_N_ - least_N_ >= kPushing_N);
   // For a device without zeroing, only motion ends the fault: a small force does not.
   if (!evident && !(stuck_ && protocol_.absolute)) still_since_s_ = now_s;
   stuck_ = now_s - still_since_s_ > calibration_.stuck_after_s;

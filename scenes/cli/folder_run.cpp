@@ -85,7 +85,9 @@ bool is_done(const Job& job) {
   _exit(0);
 }
 
-Status write_table(const FolderRun& run, const std::vector<Job>& jobs, const Shared& shared) {
+// `left`: the jobs whose messages are in `shared`.
+Status write_table(const FolderRun& run, const std::vector<Job>& jobs, const std::vector<Job>& left,
+                   const Shared& shared) {
   std::vector<std::string> keys;
   std::vector<FolderRun::Row> rows;
   for (const Job& job : jobs) {
@@ -99,9 +101,10 @@ Status write_table(const FolderRun& run, const std::vector<Job>& jobs, const Sha
     table.add({"recording", ""}, jobs[i].recording.stem().string());
     for (const std::string& key : keys) {
       const auto found = std::ranges::find(rows[i], key, &std::pair<std::string, nlohmann::ordered_json>::first);
-      table.add({key, ""}, found != rows[i].end() ? found->second : nlohmann::ordered_json());
+      table.add({key, ""}, found != rows[i].end() ? found->second : nlohmann::ordered_json(""));
     }
-    table.add({"problem", ""}, std::string(shared.problems[i]));
+    const auto at = std::ranges::find(left, jobs[i].recording, &Job::recording);
+    table.add({"problem", ""}, at != left.end() ? shared.problems[at - left.begin()] : "");
   }
   return write_file_atomically(run.out + "/" + run.table + ".csv", table_csv(table), true);
 }
@@ -140,9 +143,6 @@ Status run_folder(const FolderRun& run) {
   std::ranges::copy_if(*jobs, std::back_inserter(left), [&](const Job& job) { return run.force || !is_done(job); });
   Shared* const shared = Shared::make(jobs->size());
   if (shared == nullptr) return Error{"out of memory"};
-  // The jobs that are left come first, so that their numbers are those of the messages.
-  std::vector<Job> ordered = left;
-  std::ranges::copy_if(*jobs, std::back_inserter(ordered), [&](const Job& job) { return !run.force && is_done(job); });
   ProgressLine line(run.label);
   std::vector<pid_t> workers;
   const std::size_t count = std::min(left.size(), static_cast<std::size_t>(thread_count()));
@@ -162,7 +162,7 @@ Status run_folder(const FolderRun& run) {
     else
       std::this_thread::sleep_for(std::chrono::milliseconds(5));
   }
-  if (const Status written = write_table(run, ordered, *shared); !written) return written;
+  if (const Status written = write_table(run, *jobs, left, *shared); !written) return written;
   std::string problems;
   std::size_t failed = 0;
   for (std::size_t i = 0; i < left.size(); ++i) {

@@ -161,11 +161,11 @@ int run_program(const std::string& program, const std::vector<std::string>& word
     // The exit code of a program that a signal has ended, as in a shell.
     return fail(status.error().message, stop_requested() != 0 ? 128 + stop_requested() : kFailed);
   } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) {
+    const std::string unknown = unknown_word(app, words);
+    if (unknown.empty() && error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) {
       app.exit(error);  // --help, --version and the lists that end a verb
       return std::cout.flush() ? kDone : fail("cannot write to standard output", kFailed);
     }
-    const std::string unknown = unknown_word(app, words);
     return fail_usage(app, verbs, unknown.empty() ? error.what() : unknown);
   }
 }

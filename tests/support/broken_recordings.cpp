@@ -141,7 +141,7 @@ Table broken_times() {
       {"position in mm",
        with_row("0.003,12.5,0.5"),
        "5:7",
-       {"position_m", "12.5", "metres", "1", "millimetres", "palpate import FILE --units mm,N"}},
+       {"position_m", "12.5", "metres", "1", "palpate import FILE --out REC.csv", "millimetres", "--units mm,N"}},
       {"huge force", with_row("0.003,0.001,-2e6"), "5:13", {"force_N", "-2e+06", "newtons", "1000000", "unit"}}};
 }
 

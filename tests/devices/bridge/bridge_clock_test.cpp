@@ -43,7 +43,7 @@ constexpr Event kEvents[] = {
     {"15 ms later from now on", later_by_15_ms, 0.0, false, 0.12, 0.5},
     {"clock set back by 10 ms", [](SimulatedDevice& s) { s.board().clock_offset_us -= 10'000; }, 0.0, false},
     {"clock set forward by 10 ms", [](SimulatedDevice& s) { s.board().clock_offset_us += 10'000; }, 0.0, false,
-     0.6},  // it looks like a force that is older
+     0.4},  // it looks like a force that is older
     {"silent for 1 s", silence, 1.0, true},
     {"silent for 10 s", silence, 10.0, true},
 };

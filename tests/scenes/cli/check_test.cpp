@@ -65,7 +65,8 @@ TEST(CheckVerb, PrintsTheCommandThatCorrectsTheZeros) {
   const std::string options = " --tare auto --zero contact --out " + folder.file("moved_zeroed.csv");
   EXPECT_TRUE(test::has_parts(check.out, {"force is 0.18 N in free air", " import " + moved + options}));
   test::must_run({"import", moved, "--tare", "auto", "--zero", "contact", "--out", folder.file("moved_zeroed.csv")});
-  const auto before = test::must(read_recording(rec)).rows, after = test::must(read_recording(folder.file("moved_zeroed.csv"))).rows;
+  const auto before = test::must(read_recording(rec)).rows,
+             after = test::must(read_recording(folder.file("moved_zeroed.csv"))).rows;
   ASSERT_EQ(before.size(), after.size());
   EXPECT_NEAR(before[5000].force_N, after[5000].force_N, 2e-3);
   EXPECT_NEAR(before[5000].position_m, after[5000].position_m, 0.05e-3);

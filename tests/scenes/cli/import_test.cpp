@@ -18,9 +18,8 @@ const std::string kFiles = std::string(PALPATE_SOURCE_DIR) + "/tests/engine/impo
 TEST(ImportVerb, WritesARecordingAndPrintsTheGuesses) {
   const test::TemporaryFolder folder;
   const auto run = test::must_run({"import", kFiles + "08_excel_de.csv", "--out", folder.file("rec.csv")});
-  EXPECT_TRUE(test::has_parts(
-      run.out, {"semicolon", "decimal comma", "UTF-8", "line 1", "24 read, lines 2 to 25", "position",
-                "2 \"Weg [mm]\" in mm", " check "}));
+  EXPECT_TRUE(test::has_parts(run.out, {"semicolon", "decimal comma", "UTF-8", "line 1", "24 read, lines 2 to 25",
+                                        "position", "2 \"Weg [mm]\" in mm", " check "}));
   EXPECT_EQ(test::must(read_recording(folder.file("rec.csv"))).rows.size(), 24u);
 }
 
@@ -37,8 +36,7 @@ TEST(ImportVerb, TheCommandsOfARefusalCanBeRun) {
   const auto json = nlohmann::json::parse(test::must_run({"import", both, "--out", out, "--json", "--block", "2"}).out);
   EXPECT_EQ(json["rows"], 24);
   EXPECT_EQ(json["first_line"], 27);
-  EXPECT_EQ(json["left_out"][0].dump(),
-            R"({"first_line":2,"last_line":25,"reason":"in another block","rows":24})");
+  EXPECT_EQ(json["left_out"][0].dump(), R"({"first_line":2,"last_line":25,"reason":"in another block","rows":24})");
 }
 
 TEST(ImportVerb, WritesOverNothingWithoutForceAndLeavesNothingAfterAnError) {

@@ -111,7 +111,7 @@ TEST(Layout, ANameStandsAtItsPointBetweenTheBars) {
   ASSERT_EQ(tags.size(), 2u);
   EXPECT_TRUE(tags[0].begins_here);
   EXPECT_DOUBLE_EQ(tags[0].x, 0.2);
-  EXPECT_DOUBLE_EQ(tags[0].y, 0.27);
+  EXPECT_DOUBLE_EQ(tags[0].y, 0.37) << "above the bar";
   EXPECT_FALSE(tags[1].begins_here);
   EXPECT_DOUBLE_EQ(tags[1].x, 0.95);
   EXPECT_DOUBLE_EQ(tags[1].y, 0.92);

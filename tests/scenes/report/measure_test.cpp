@@ -108,10 +108,6 @@ TEST(Measure, HasTheMainModelsWithFiveSeedsAndNamesWithTheNumberOfCentres) {
       EXPECT_EQ(one.seeds, one.plan->method->can_take(kTakesSeed) ? kSeeds : 1) << one.name;
       EXPECT_LE(one.p99_range.low, one.errors.p99_error_over_jnd);
       EXPECT_GE(one.p99_range.high, one.errors.p99_error_over_jnd);
-      if (one.p99_range.low < one.p99_range.high) {
-        EXPECT_LT(one.p99_range.low, one.errors.p99_error_over_jnd) << "the median of five";
-        EXPECT_GT(one.p99_range.high, one.errors.p99_error_over_jnd);
-      }
       if (one.plan->base == Base::trend) {
         EXPECT_LT(one.moved.rms_error_N, one.errors.rms_error_N) << one.name;
       }
