@@ -208,10 +208,8 @@ ResidualRows residual_rows(const ModelData& common, const TrendColumns& columns,
     out.unit.push_back(columns.unit(row));
     const std::size_t sample = columns.rows()[row];
     out.speed_m_per_s(k) = std::abs(columns.samples().rows[sample].motion.velocity_m_per_s);
-    // Samples that do not come from recordings have no offsets.
-    const std::vector<RecordingOffset>& offsets = columns.samples().offsets;
-    const auto recording = static_cast<std::size_t>(columns.samples().recording[sample]);
-    const RecordingOffset offset = recording < offsets.size() ? offsets[recording] : RecordingOffset{};
+    const RecordingOffset& offset =
+        columns.samples().offsets[static_cast<std::size_t>(columns.samples().recording[sample])];
     const auto elastic_N = [&](double by_m) {
       return common.trend.elastic.at(std::max(0.0, out.depth_m(k) + by_m) / common.trend.reference_depth_m);
     };

@@ -76,11 +76,13 @@ SamplesPointer samples_of(const SiteSet& set) {
     samples.force_N = std::max(samples.force_N, row.force_N);
     samples.fold.push_back(static_cast<int>(kFolds * i / count));
     samples.stroke.push_back(samples.fold.back() + 1);
+    samples.unit.push_back(samples.fold.back());
     samples.recording.push_back(0);
     samples.contact.push_back(static_cast<std::size_t>(i));
     samples.rows.push_back(row);
   }
   samples.folds = kFolds;
+  samples.units = kFolds;
   samples.strokes = kFolds;
   samples.offsets.emplace_back().name = "sites";
   samples.recorded_rows = static_cast<std::size_t>(count);
