@@ -1,7 +1,6 @@
 // Compares the models of a session with a reference force, tick by tick. It has, for every slot, the errors of these
-// ticks, the sustained error, the dent that is drawn, and the forces of the last kHistory_s at 1 kHz for curves: one point
-// per tick that read a sample.
-// Thread guarantee: one thread.
+// ticks, the sustained error, the dent that is drawn, and the forces of the last kHistory_s at 1 kHz for curves: one
+// point per tick that read a sample. Thread guarantee: one thread.
 #pragma once
 
 #include <algorithm>

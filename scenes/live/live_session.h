@@ -19,7 +19,6 @@
 #include "engine/tick/jnd.h"
 #include "scenes/live/comparison.h"
 #include "scenes/live/fault_log.h"
-#include "scenes/live/model_test.h"
 #include "scenes/live/session_models.h"
 #include "scenes/live/session_recorder.h"
 #include "scenes/live/verdict.h"
