@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <string_view>
 
+#include "devices/bridge/byte_stream.h"
 #include "devices/virtual/replay_device.h"
 #include "engine/base/text.h"
 #include "engine/live/pacer.h"
@@ -112,6 +113,7 @@ ModelTest::MakeRecording LiveSession::make_test(std::optional<Recording> part) c
 
 Result<std::unique_ptr<LiveSession>> LiveSession::open(const SessionRequest& request) {
   const double began_s = steady_now_s();
+  if (request.remote_bridges) allow_remote_bridges();
   Result<Scene> scene = load_scene(request.scene.empty() ? "silicone_block" : request.scene);
   if (!scene) return scene.error();
   DeviceRequest device_request{.calibrations = calibrations_folder(), .bus = request.bus};
