@@ -144,7 +144,7 @@ class StabilityLimit {
   static constexpr double kLightestHand_kg = 0.05;      // m, a finger on which a tool rests
   static constexpr double kHandDamping_Ns_per_m = 1.8;  // b; relaxed fingers have more (Hajian & Howe 1997)
   static constexpr double kShareOfDamping = 0.38;       // c
-  // Follows the current delay with a time constant of 0.1 s where it grows and 4 s where it falls, because an
+  // Follows the current delay with a time constant of 0.1 s where it grows and 2 s where it falls, because an
   // increase of stiffness during a press adds energy. The first call takes it at once; before it nothing is limited.
   void update(double lag_s, double step_s) noexcept {
     const double time_s = lag_s > lag_s_ ? kRise_s : kFall_s;
@@ -163,7 +163,7 @@ class StabilityLimit {
   }
 
  private:
-  static constexpr double kRise_s = 0.1, kFall_s = 4.0, kNone = 1e-9;
+  static constexpr double kRise_s = 0.1, kFall_s = 2.0, kNone = 1e-9;
   double lag_s_ = 0.0;
 };
 

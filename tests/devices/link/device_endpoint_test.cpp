@@ -289,7 +289,7 @@ TEST(BridgeEndpoint, ARateThatFallsBelowOneHundredHzTakesTheForceAwayUntilItRise
     std::uint32_t faults = 0;
     EXPECT_LT(ticks_until(simulated, true, 3000, faults), 1700) << "after a second";
     EXPECT_LT(simulated.snapshot.rendered_N, 0.2) << "with a ramp";
-    simulated.run_s(16.0);  // four time constants of the stability limit
+    simulated.run_s(16.0);  // eight time constants of the stability limit
     EXPECT_GT(simulated.motor_N(), 3.5);
   }
 }
