@@ -98,10 +98,10 @@ RowFault RowRules::explain(const RecordingRow& row) const {
                                                  : "sort the rows, or split the file where time starts again"));
   }
   if (std::abs(row.position_m) > kMaximumPosition_m) {
-    return fault(
-        ColumnRole::kPosition, row.position_m,
-        ", expected metres from the surface, at most 1 either way; palpate import FILE --out REC.csv moves its zero with "
-        "--zero first, and reads millimetres with --units mm,N");
+    return fault(ColumnRole::kPosition, row.position_m,
+                 ", expected metres from the surface, at most 1 either way; palpate import FILE --out REC.csv moves "
+                 "its zero with "
+                 "--zero first, and reads millimetres with --units mm,N");
   }
   return fault(ColumnRole::kForce, row.force_N,
                ", expected newtons, at most 1000000 either way; check the unit of the column");

@@ -11,8 +11,8 @@
 #include "engine/tick/features.h"
 #include "engine/tick/jnd.h"
 #include "models/check/recording_measures.h"
-#include "models/samples/samples.h"
 #include "models/samples/recording_faults.h"
+#include "models/samples/samples.h"
 
 namespace palpate {
 

@@ -158,8 +158,8 @@ Result<CheckedFile> check_recording_file(const std::string& path, const CheckReq
   const std::filesystem::path given(path);
   const std::string corrected = (given.parent_path() / (given.stem().string() + "_zeroed.csv")).string();
   for (Finding& finding : file.check.findings) {
-    for (const auto& [word, name] : {std::pair<std::string_view, const std::string&>{" FILE ", path},
-                                     {" REC.csv", corrected}}) {
+    for (const auto& [word, name] :
+         {std::pair<std::string_view, const std::string&>{" FILE ", path}, {" REC.csv", corrected}}) {
       const std::size_t at = finding.advice.find(word);
       if (at == std::string::npos) continue;
       finding.advice.replace(at, word.size(), " " + shell_word(name) + (word.back() == ' ' ? " " : ""));

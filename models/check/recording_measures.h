@@ -44,25 +44,26 @@ struct RecordingMeasures {
 
 RecordingMeasures measure_recording(const Recording& recording, double surface_m);
 
-// The white noise of the force, N. PreparedRecording::force_noise_N is that of the quietest fifth of windows of 50 rows,
-// which for white noise is the 0.2 quantile of its estimates, 0.87 of the standard deviation (simulated, 20,000
+// The white noise of the force, N. PreparedRecording::force_noise_N is that of the quietest fifth of windows of 50
+// rows, which for white noise is the 0.2 quantile of its estimates, 0.87 of the standard deviation (simulated, 20,000
 // windows).
 double white_force_noise_N(const PreparedRecording& prepared);
 
 // How the force zero changes over a recording, from groups of its rows in free air, of equal size: a line and a step.
 // f(t) = a + b t + c H(t - t0) is fitted to the medians of the groups.
 struct ZeroDrift {
-  double range_N = 0.0;                 // largest minus smallest median
+  double range_N = 0.0;                     // largest minus smallest median
   double standard_error_N = kUnknownError;  // of a median
-  double line_N = 0.0;                  // b times the duration
-  double step_N = 0.0, step_at_s = 0.0;  // c and t0; 0 without a step that lowers the error to less than half
+  double line_N = 0.0;                      // b times the duration
+  double step_N = 0.0, step_at_s = 0.0;     // c and t0; 0 without a step that lowers the error to less than half
 };
 ZeroDrift find_zero_drift(const PreparedRecording& prepared);
 
-// The lag of the force behind the position (force_lag.cpp), of at most kMostLag_s either way. `rows`: of a recording, in
-// time order; uses the first 4000 that are at least 5 ms apart. `at` > 0 s: the force is late; 0 if the data do not
-// identify a lag (profile_search.h), with fewer than 100 rows or three strokes, or with rows too far apart. The standard
-// error includes the interval of the rows. A lag at the end of the search is kMostLag_s, with an infinite error.
+// The lag of the force behind the position (force_lag.cpp), of at most kMostLag_s either way. `rows`: of a recording,
+// in time order; uses the first 4000 that are at least 5 ms apart. `at` > 0 s: the force is late; 0 if the data do not
+// identify a lag (profile_search.h), with fewer than 100 rows or three strokes, or with rows too far apart. The
+// standard error includes the interval of the rows. A lag at the end of the search is kMostLag_s, with an infinite
+// error.
 inline constexpr double kMostLag_s = 1.0;
 OffsetEstimate find_force_lag(const std::vector<Sample>& rows, double force_noise_N);
 

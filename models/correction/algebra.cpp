@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <memory>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <string>
 

@@ -50,8 +50,8 @@ double change_beside(const std::vector<Run>& runs, std::size_t at) {
   return std::max(change(at - 1, at + 1), std::min(change(at - 2, at - 1), change(at + 1, at + 2)));
 }
 
-// The scatter of a column around a row: the upper quartile of the distances of rows from the mean of their neighbours. A
-// sensor may be noisier at a high force than in air.
+// The scatter of a column around a row: the upper quartile of the distances of rows from the mean of their neighbours.
+// A sensor may be noisier at a high force than in air.
 double scatter_beside(const Rows& rows, Column column, std::size_t at) {
   constexpr std::size_t kReach = 32;
   std::vector<double> distances;

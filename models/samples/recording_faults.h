@@ -2,10 +2,10 @@
 // before anything is computed. A test keeps all rows (read_recording), as does a device.
 //
 // Dropout: up to three consecutive rows with one value outside the range of their neighbours, by more than six times
-// the noise, six times the 90 % quantile of such distances, eight times the scatter of the rows next to it (the noise at
-// that force), and three times the change of the signal next to it. A
-// position must also imply an acceleration above 100 m/s^2; otherwise, and for a force below 100 Hz, three dropouts
-// must have exactly the same value. Fewer than three, or more than a tenth of all rows, are not removed.
+// the noise, six times the 90 % quantile of such distances, eight times the scatter of the rows next to it (the noise
+// at that force), and three times the change of the signal next to it. A position must also imply an acceleration above
+// 100 m/s^2; otherwise, and for a force below 100 Hz, three dropouts must have exactly the same value. Fewer than
+// three, or more than a tenth of all rows, are not removed.
 //
 // Held values: the position or the force is slower than the rows, which repeat its last value: it changes by several of
 // its steps at once and then not for equal intervals of two rows or more, at any speed. Only the rows with an update

@@ -1,10 +1,10 @@
 // Recordings with the estimates from each alone, and the table of samples of a training.
 //
-// Surface and force zero of a recording come from it alone; palpate check reports them, and a fit uses them. Free air is
-// a range at the outer end of the positions where the force during loading does not depend on the position; without it,
-// neither is identified. Force zero: the mean force there, without outliers. Surface: the onset of force in touches of a
-// surface at rest that begin in free air: the first, and those after 5 s of air, because a surface that still recovers
-// meets the tool late, by up to a millimetre. During loading,
+// Surface and force zero of a recording come from it alone; palpate check reports them, and a fit uses them. Free air
+// is a range at the outer end of the positions where the force during loading does not depend on the position; without
+// it, neither is identified. Force zero: the mean force there, without outliers. Surface: the onset of force in touches
+// of a surface at rest that begin in free air: the first, and those after 5 s of air, because a surface that still
+// recovers meets the tool late, by up to a millimetre. During loading,
 //   J(d0) = sum_i (f_i - zero - x_i^n (a (1 - k x_i) + b k x_i))^2,
 //           x_i = max(0, p_i - d0),  a, b >= 0,  n = 1 or 1.5,  k = n / ((n + 1) 3 mm)
 // is minimised over d0: a force law that is convex or concave and rises up to 3 mm.
@@ -15,8 +15,9 @@
 // Positions and forces are corrected by the offset of their recording, where that is clear. The
 // surface of the table is the median of the clear surfaces, because the next recording is as likely on one side of it
 // as on the other. Without one, recordings that press at every position have theirs outside of all positions, and
-// recordings that begin under a preload where the line through their first forces is 0. Neighbouring samples of a stroke have correlated errors, so a fold never consists of single samples.
-// Thread guarantee: immutable values and pure functions, slow side.
+// recordings that begin under a preload where the line through their first forces is 0. Neighbouring samples of a
+// stroke have correlated errors, so a fold never consists of single samples. Thread guarantee: immutable values and
+// pure functions, slow side.
 #pragma once
 
 #include <Eigen/Core>

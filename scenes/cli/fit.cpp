@@ -231,8 +231,7 @@ void add_fit(CLI::App& app, Verbs& verbs) {
   for (const PlanOption& option : plan_options()) add_plan_option(*verb, option, arguments);
   verb->add_flag_callback("--list-methods", list_methods, "Print the names of all methods, one per line");
   verb->option_defaults()->always_capture_default();
-  verb->add_option("--scene", arguments->scene, "Scene that gives the features and the JND line")
-      ->check(scene_name());
+  verb->add_option("--scene", arguments->scene, "Scene that gives the features and the JND line")->check(scene_name());
   verb->add_option("--out", arguments->out, "Model file (JSON) or folder to write")
       ->required()
       ->type_name("JSON|FOLDER");

@@ -158,10 +158,8 @@ void print_import_json(const ImportOptions& options, const ImportRequest& reques
   const double rate_Hz = request.rate_Hz.value_or(static_cast<double>(table.recording.rows.size() - 1) / seconds);
   Json left_out = Json::array();
   for (const LeftOut& one : table.left_out)
-    left_out.push_back({{"reason", one.reason},
-                        {"rows", one.rows},
-                        {"first_line", one.lines.first},
-                        {"last_line", one.lines.last}});
+    left_out.push_back(
+        {{"reason", one.reason}, {"rows", one.rows}, {"first_line", one.lines.first}, {"last_line", one.lines.last}});
   Json columns = Json::object();
   for (std::size_t role = 0; role < kRoles; ++role) {
     const ImportedColumn& column = table.columns[role];

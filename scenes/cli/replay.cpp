@@ -289,8 +289,8 @@ Status draw_replay(const std::string& path, const std::string& recording, const 
   return draw_plot(plot, path, overwrite);
 }
 
-// `after`: the recording that this one continues; null: none. `forces_path`: features and forces; `plot_path`: a figure.
-// Empty: not requested.
+// `after`: the recording that this one continues; null: none. `forces_path`: features and forces; `plot_path`: a
+// figure. Empty: not requested.
 Result<ReplayedRecording> replay_one(const CheckedFile& checked, const Recording* after,
                                      const std::vector<LoadedModel>& models, const std::string& forces_path,
                                      const std::string& plot_path, bool overwrite) {
@@ -397,15 +397,17 @@ void add_replay(CLI::App& app, Verbs& verbs) {
   command->add_option("--recording", options->recordings, "Recordings to replay (CSV), one or more")
       ->required()
       ->type_name("CSV");
-  command->add_option("--after", options->after,
-                      "Recording that these continue: the models begin with the memory of its end (CSV)")
+  command
+      ->add_option("--after", options->after,
+                   "Recording that these continue: the models begin with the memory of its end (CSV)")
       ->type_name("CSV");
   command->add_option("--model", options->models, "Model files (JSON), 1 to 16")->required();
   command->add_option("--name", options->names,
                       "Names of the models in the results, one for each --model in the same order [as in the files]");
-  command->add_option("--plot", options->plot,
-                      "Figure to draw (.svg or .png): force, errors in JND, and errors over force; for several "
-                      "recordings PLOT_RECORDING")
+  command
+      ->add_option("--plot", options->plot,
+                   "Figure to draw (.svg or .png): force, errors in JND, and errors over force; for several "
+                   "recordings PLOT_RECORDING")
       ->check(CLI::Validator(
           [](const std::string& path) {
             return path.ends_with(".svg") || path.ends_with(".png")

@@ -23,8 +23,8 @@
 #include "engine/base/parallel.h"
 #include "engine/base/result.h"
 #include "engine/tick/replay.h"
-#include "models/samples/selection.h"
 #include "models/samples/samples.h"
+#include "models/samples/selection.h"
 #include "scenes/evaluation/model_errors.h"
 
 namespace palpate {
@@ -81,7 +81,7 @@ struct EvaluationRequest {
   // Errors count from this time of the recording on. Earlier rows are replayed because the features have memory.
   double counted_from_s = -std::numeric_limits<double>::infinity();
   const Recording* after = nullptr;  // the recording that this one continues (engine/tick/replay.h)
-  bool move_surface = true;  // false: the figures with the surface moved equal those as recorded
+  bool move_surface = true;          // false: the figures with the surface moved equal those as recorded
   // The models from which one common surface offset is estimated. Empty: each model has its own estimate.
   std::vector<ModelPointer> surface_models;
   FitControl control;

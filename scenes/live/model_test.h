@@ -18,8 +18,8 @@
 #include "engine/live/device.h"
 #include "engine/recording/recording.h"
 #include "engine/tick/jnd.h"
-#include "scenes/evaluation/model_errors.h"
 #include "scenes/evaluation/evaluate.h"
+#include "scenes/evaluation/model_errors.h"
 
 namespace palpate {
 

@@ -129,8 +129,9 @@ Notice SessionRecorder::finish() {
   const Status status = writer_->commit();
   if (!status && writer_->flushed_rows() == 0) return {"the recording was lost: " + status.error().message, true};
   if (!status) {
-    return {"the recording ended early: " + status.error().message + "; " + AtomicFile::part_of(request_.path) + " has its first " +
-                std::to_string(writer_->flushed_rows()) + " rows; make room, and record the rest into another file",
+    return {"the recording ended early: " + status.error().message + "; " + AtomicFile::part_of(request_.path) +
+                " has its first " + std::to_string(writer_->flushed_rows()) +
+                " rows; make room, and record the rest into another file",
             true};
   }
   return {"recorded " + std::to_string(writer_->rows()) + " rows (" + fixed(time_.last_s() - time_.gaps_s(), 1) +

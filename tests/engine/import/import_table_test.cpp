@@ -123,18 +123,41 @@ std::string table_of(const std::string& header, const std::string& pattern, int 
         continue;
       }
       switch (pattern[++at]) {
-        case 't': text += fixed(t, 2); break;
-        case 'm': text += std::to_string(ms); break;
-        case 'u': text += fixed(t / 60.0, 7); break;
-        case 'k': text += std::to_string(638450000000000000LL + 10000LL * ms); break;
-        case 'c': text += "12:30:" + padded(ms / 1000, 2) + "." + padded(ms % 1000, 3); break;
-        case 's': text += std::to_string(1700000000 + ms / 1000); break;
-        case 'p': text += std::to_string(ms % 1000); break;
-        case 'x': text += fixed(position_mm(i), 3); break;
-        case 'f': text += fixed(force_N(i), 3); break;
-        case 'g': text += fixed(1e3 * force_N(i), 1); break;
-        case 'b': text += i % 2 == 0 ? "1" : "2"; break;
-        default: text += std::to_string(i);
+        case 't':
+          text += fixed(t, 2);
+          break;
+        case 'm':
+          text += std::to_string(ms);
+          break;
+        case 'u':
+          text += fixed(t / 60.0, 7);
+          break;
+        case 'k':
+          text += std::to_string(638450000000000000LL + 10000LL * ms);
+          break;
+        case 'c':
+          text += "12:30:" + padded(ms / 1000, 2) + "." + padded(ms % 1000, 3);
+          break;
+        case 's':
+          text += std::to_string(1700000000 + ms / 1000);
+          break;
+        case 'p':
+          text += std::to_string(ms % 1000);
+          break;
+        case 'x':
+          text += fixed(position_mm(i), 3);
+          break;
+        case 'f':
+          text += fixed(force_N(i), 3);
+          break;
+        case 'g':
+          text += fixed(1e3 * force_N(i), 1);
+          break;
+        case 'b':
+          text += i % 2 == 0 ? "1" : "2";
+          break;
+        default:
+          text += std::to_string(i);
       }
     }
     text += "\n";
@@ -178,11 +201,12 @@ TEST(ImportTable, OneReadingIsImported) {
       {"a robot", table_of("t_s,z_mm,F_N", "%t,%x,%f"), ""},
       {"a chosen block", table_of(kHeader, "%t,9,9", 0, 20) + "\n" + kPlain, "--block 2"},
       {"chosen lines", table_of(kHeader, "%t,9,9", 0, 20) + rows_of(0, kRows), "--rows 22-221"},
-      {"intervals of LabVIEW", "LabVIEW Measurement\nX_Columns\tNo\nDelta_X\t0.01\t0.01\nX0\t0\t0\nX_Value\tF (N)\tx (mm)\n" +
-                                   table_of("", "\t%f\t%x"),
+      {"intervals of LabVIEW",
+       "LabVIEW Measurement\nX_Columns\tNo\nDelta_X\t0.01\t0.01\nX0\t0\t0\nX_Value\tF (N)\tx (mm)\n" +
+           table_of("", "\t%f\t%x"),
        ""},
-      {"a remark that is left out", table_of(kHeader, "%t,%x,%f", 0, 8) + "event: hold\n" +
-                                        all_replaced(kPlain, kHeader + "\n" + rows_of(0, 8), ""),
+      {"a remark that is left out",
+       table_of(kHeader, "%t,%x,%f", 0, 8) + "event: hold\n" + all_replaced(kPlain, kHeader + "\n" + rows_of(0, 8), ""),
        "--skip-bad-rows 1"},
   };
   for (const Case& one : cases) {
@@ -212,8 +236,8 @@ TEST(ImportTable, OtherwiseTheReadingsThatRemainAreCommands) {
        "rig.txt: " + blocks + command + "--block 1  # lines 2 to 61: 60 rows of 3 fields" + command +
            "--block 2  # lines 63 to 262: 200 rows of 3 fields"},
       {"2020,3,2,12,30,45\n" + table_of("", "%x,%f"), "--columns position=1,force=2",
-       "rig.txt: " + blocks + command + "--columns position=1,force=2 --block 1  # line 1: 1 row of 6 fields" + command +
-           "--columns position=1,force=2 --block 2  # lines 2 to 201: 200 rows of 2 fields"},
+       "rig.txt: " + blocks + command + "--columns position=1,force=2 --block 1  # line 1: 1 row of 6 fields" +
+           command + "--columns position=1,force=2 --block 2  # lines 2 to 201: 200 rows of 2 fields"},
       {kHeader + "\n1,2,3\n" + rows_of(0, kRows), "",
        "rig.txt: " + blocks + command + "--block 1  # line 2: 1 row of 3 fields" + command +
            "--block 2  # lines 3 to 202: 200 rows of 3 fields"},
@@ -244,7 +268,8 @@ TEST(ImportTable, OtherwiseTheReadingsThatRemainAreCommands) {
        "rig.txt: found rows of 2 series that alternate, by column 1 \"specimen\" (1, 2), expected one; write the rows "
        "of each into a file of its own"},
       {"Time (s),Position (m),Force (N)\ns,mm,N\n" + rows_of(0, kRows), "",
-       "rig.txt:1: found two units of the position \"Position (m)\": m in the name and mm in the row of units, expected "
+       "rig.txt:1: found two units of the position \"Position (m)\": m in the name and mm in the row of units, "
+       "expected "
        "one; correct the header"},
       {table_of("Force,Unit,x (mm),t (s)", "%g,mN,%x,%t"), "--units N",
        "rig.txt: found the unit mN in the rows of the force \"Force\", expected N, as --units says; correct the one "
@@ -260,7 +285,8 @@ TEST(ImportTable, OtherwiseTheReadingsThatRemainAreCommands) {
        "rig.txt:42: found \"OL\" in column 2 \"F (N)\", expected a number; repair the value, or leave the row out" +
            command + "--rate 100 --skip-bad-rows 1  # without 1 such row; the other rows keep their times"},
       {"time,position,force\ntime,force,position\n" + rows_of(0, kRows), "",
-       "rig.txt:1: found names of columns in this line and in line 2 that put the position and the force into different "
+       "rig.txt:1: found names of columns in this line and in line 2 that put the position and the force into "
+       "different "
        "columns, expected one header; remove the wrong line, or say which column is which by their numbers: --columns "
        "time=N,position=N,force=N"},
       {table_of("Time (s),Weg (mm),Load (stone)", "%t,%x,%f"), "",
@@ -281,14 +307,15 @@ TEST(ImportTable, OtherwiseTheReadingsThatRemainAreCommands) {
 // A row that is left out leaves its time.
 TEST(ImportTable, ARowThatIsLeftOutLeavesItsTime) {
   std::string text = "x (mm),F (N)\n";
-  for (int i = 0; i < 100; ++i) text += fixed(position_mm(i), 3) + (i >= 40 && i < 50 ? ",OL\n" : "," + fixed(force_N(i), 3) + "\n");
+  for (int i = 0; i < 100; ++i)
+    text += fixed(position_mm(i), 3) + (i >= 40 && i < 50 ? ",OL\n" : "," + fixed(force_N(i), 3) + "\n");
   const auto table = import_bytes(text, "--rate 100 --skip-bad-rows 10");
   ASSERT_TRUE(table.ok()) << table.error().message;
   ASSERT_EQ(table->recording.rows.size(), 90u);
   EXPECT_NEAR(table->recording.rows.back().time_s, 0.99, 1e-9);
   ASSERT_EQ(table->left_out.size(), 1u);
-  EXPECT_EQ(row_words(*table), (std::vector<std::string>{"90 read, lines 2 to 101",
-                                                         "left out 10 rows (unreadable), lines 42 to 51"}));
+  EXPECT_EQ(row_words(*table),
+            (std::vector<std::string>{"90 read, lines 2 to 101", "left out 10 rows (unreadable), lines 42 to 51"}));
   std::string coarse = "Time;x (mm);F (N)\n";
   for (int i = 0; i < 200; ++i)
     coarse += "12:30:" + std::to_string(10 + i / 20) + ";" + std::to_string(i) + ";" +
@@ -303,8 +330,8 @@ TEST(ImportTable, DayAndMonthAreDecidedOnceForTheColumn) {
     const std::string both = form, before = both.substr(0, both.find(';')), after = both.substr(before.size() + 1);
     std::string text = "Timestamp,x (mm),F (N)\n";
     for (int i = 0; i < 120; ++i)
-      text += all_replaced(i < 60 ? before : after, "%", fixed(i < 60 ? 54.0 + 0.1 * i : 0.1 * (i - 60), 3)) + "," + std::to_string(i) +
-              ",2" + std::to_string(i) + "\n";
+      text += all_replaced(i < 60 ? before : after, "%", fixed(i < 60 ? 54.0 + 0.1 * i : 0.1 * (i - 60), 3)) + "," +
+              std::to_string(i) + ",2" + std::to_string(i) + "\n";
     const auto table = import_bytes(all_replaced(text, ":0.", ":00."));
     ASSERT_TRUE(table.ok()) << table.error().message;
     EXPECT_NEAR(table->recording.rows.back().time_s, 11.9, 1e-6) << form;
@@ -315,16 +342,18 @@ TEST(ImportTable, TheLimitsAreThoseAfterTheCorrections) {
   auto table = import_bytes(table_of("t_s,z_m,F_N", "%t,1.2%i,%f", 10, 99));
   ASSERT_TRUE(table.ok()) << table.error().message;
   const ImportRequest request = request_of("--out r.csv");
-  EXPECT_EQ(check_limits("rig.txt", request, *table).error().message,
-            "rig.txt: found the position 1.298 m, expected metres from the surface, at most 1 either way; move position "
-            "0\n  palpate import rig.txt --out r.csv --zero contact  # where the force begins\n"
-            "  palpate import rig.txt --out r.csv --zero first  # the first row");
+  EXPECT_EQ(
+      check_limits("rig.txt", request, *table).error().message,
+      "rig.txt: found the position 1.298 m, expected metres from the surface, at most 1 either way; move position "
+      "0\n  palpate import rig.txt --out r.csv --zero contact  # where the force begins\n"
+      "  palpate import rig.txt --out r.csv --zero first  # the first row");
   for (RecordingRow& row : table->recording.rows) row.position_m -= 1.25;
   EXPECT_TRUE(check_limits("rig.txt", request, *table).ok());
 }
 
 TEST(ImportTable, KeepsTheVelocityOfARecording) {
-  const auto table = test::must(import_bytes(table_of("time_s,position_m,force_N,velocity_m_per_s", "%t,0.00%i,%f,0.1%i", 10, 99)));
+  const auto table =
+      test::must(import_bytes(table_of("time_s,position_m,force_N,velocity_m_per_s", "%t,0.00%i,%f,0.1%i", 10, 99)));
   EXPECT_TRUE(table.recording.columns.velocity);
   EXPECT_NEAR(table.recording.rows[2].velocity_m_per_s, 0.112, 1e-12);
 }

@@ -17,8 +17,8 @@ using namespace test;
 std::vector<FeatureSpec> every_memory() {
   FeatureSpec slowed = spectrum({0.05, 0.8, 3.0}, stiffening());
   slowed.slowing = 1.5;
-  return {FeatureSpec{}, {FeatureKind::velocity}, lowpass(0.17), slowed, stops({1e-4, 1e-3}, stiffening()),
-          creep({2.0}, stiffening())};
+  return {FeatureSpec{}, {FeatureKind::velocity},           lowpass(0.17),
+          slowed,        stops({1e-4, 1e-3}, stiffening()), creep({2.0}, stiffening())};
 }
 
 TEST(Beginning, InContactAndNearerToAnEndThanToEveryBeginning) {
@@ -27,8 +27,9 @@ TEST(Beginning, InContactAndNearerToAnEndThanToEveryBeginning) {
   const struct {
     double first_m;
     int began;
-  } cases[] = {{-2e-3, kBeganAtRest}, {0.0, kBeganAtRest}, {1.5e-3, kBeganAtRest}, {2e-3, kBeganAtRest},
-               {2.1e-3, 0},           {3.9e-3, 0},         {4.1e-3, 1},            {50e-3, 1}};
+  } cases[] = {{-2e-3, kBeganAtRest}, {0.0, kBeganAtRest}, {1.5e-3, kBeganAtRest},
+               {2e-3, kBeganAtRest},  {2.1e-3, 0},         {3.9e-3, 0},
+               {4.1e-3, 1},           {50e-3, 1}};
   for (const auto& [first_m, began] : cases) {
     FeatureState state;
     plan.begin(state, {7.0, first_m});

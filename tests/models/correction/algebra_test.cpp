@@ -186,7 +186,8 @@ TEST(TruncatedWeights, AreThoseOfThePapersPseudoInverse) {
       // Rounding of the largest value over the smallest that is kept.
       const double tolerance = 1e-13 * expected.condition_number * expected.weights_and_tail.norm();
       EXPECT_LT((solved.function().weights - expected.weights_and_tail.head(30)).norm(), tolerance);
-      EXPECT_LT((solved.function().tail - expected.weights_and_tail.tail(solved.function().tail.size())).norm(), tolerance);
+      EXPECT_LT((solved.function().tail - expected.weights_and_tail.tail(solved.function().tail.size())).norm(),
+                tolerance);
     }
     // 30 centres of which two coincide.
     EXPECT_EQ(rank_before, 29 + tail_size(tail_degree(kernel), 2)) << kernel_name(kernel);

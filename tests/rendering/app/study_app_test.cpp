@@ -9,8 +9,8 @@
 #include <chrono>
 #include <filesystem>
 
-#include "scenes/study/study_file.h"
 #include "scenes/study/study_analysis.h"
+#include "scenes/study/study_file.h"
 #include "tests/support/message_parts.h"
 #include "tests/support/study_driving.h"
 #include "tests/support/temporary_folder.h"
