@@ -90,7 +90,7 @@ class HapticsTick {
 
   const TickSnapshot& step(const ToolSample& sample) noexcept;
   // Domain and bound of model `index` at the last sample, NaN before the first; or of all models, into the snapshot.
-  // For whoever reads them: a tick needs neither. Wait-free; forces and memory do not change.
+  // Domain and bound of the last force; the tick itself needs neither. Wait-free; forces and memory do not change.
   ForceEstimate assessed(std::size_t index) const noexcept;
   const TickSnapshot& assess() noexcept;
 
