@@ -19,7 +19,6 @@
 #include "rendering/app/study_app.h"
 #include "scenes/scene/folders.h"
 #include "scenes/study/study_file.h"
-#include "scenes/worker/model_request.h"
 #include "scenes/worker/model_worker.h"
 
 namespace palpate {

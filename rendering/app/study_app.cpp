@@ -6,7 +6,7 @@
 #include <cctype>
 #include <utility>
 
-#include "rendering/panels/panel_parts.h"
+#include "rendering/panels/panel.h"
 #include "scenes/scene/folders.h"
 #include "scenes/study/study_analysis.h"
 

@@ -10,8 +10,7 @@
 
 #include "engine/base/result.h"
 #include "rendering/app/window.h"
-#include "rendering/ui/ui_context.h"
-#include "rendering/ui/ui_style.h"
+#include "rendering/ui/ui.h"
 #include "scenes/study/study_session.h"
 
 namespace palpate {

@@ -5,12 +5,12 @@
 #include <cstdio>
 #include <vector>
 
-#include "scenes/worker/model_request.h"
+#include "scenes/worker/model_worker.h"
 
 namespace palpate {
 namespace {
 
-void draw_centres(LiveSession& session, const ModelsView& models, ViewState& view) {
+void draw_centres(const ModelsView& models, ViewState& view, const WindowActions& actions) {
   std::vector<std::size_t> slots = models.listed();
   std::erase_if(slots, [&](std::size_t slot) { return !models.slots[slot].takes_centres; });
   const bool refitting =
@@ -26,7 +26,7 @@ void draw_centres(LiveSession& session, const ModelsView& models, ViewState& vie
   if (ImGui::SliderInt("##centres", &centres, 1, kMostCentres, "%d",
                        ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp)) {
     view.requested_centres = centres;
-    for (const std::size_t slot : slots) session.models().refit(slot, centres);
+    for (const std::size_t slot : slots) actions.refit(slot, centres);
   }
   tip("Fits every model that has centres again with this number of centres.\n"
       "Drag to the left, and watch the curves leave their band and the dots move.");
@@ -89,6 +89,7 @@ void draw_error_bins(const ModelsView& models, const UiStyle& style, float heigh
 
 constexpr std::size_t kFaultsShown = 6;
 constexpr double kFewFrames_per_s = 50.0;
+constexpr std::uint64_t kStart_ticks = 10'000;
 // A larger share of missed deadlines is reported.
 constexpr double kManyMissed = 0.01;
 
@@ -202,7 +203,8 @@ HealthWords health_words(const HealthView& health, double recent_fps, bool detai
                 (health.scheduling.realtime ? "" : ", or allow real-time priority"),
             true};
   }
-  if (recent_fps > 0.0 && recent_fps < kFewFrames_per_s) {
+  // The first seconds have the start in them.
+  if (recent_fps > 0.0 && recent_fps < kFewFrames_per_s && statistics.ticks > kStart_ticks) {
     // A slow picture does not affect the force, so it is not a fault.
     return {text_of("%.0f frames a second: a slow picture, ", recent_fps) +
                 (statistics.missed_deadlines == 0 ? "the force is not affected"
@@ -214,15 +216,16 @@ HealthWords health_words(const HealthView& health, double recent_fps, bool detai
           false};
 }
 
-void draw_panel(ForceCurves& curves, LiveSession& session, const WindowView& shown, ViewState& view,
-                const UiStyle& style, const SceneArea& area) {
-  begin_panel("panel", area);
+void draw_panel(ForceCurves& curves, const WindowView& shown, ViewState& view, const UiStyle& style,
+                const SceneArea& area, const WindowActions& actions) {
+  begin_panel(kPanelWindow, area);
   const ModelsView& models = shown.models;
   const float line = ImGui::GetTextLineHeightWithSpacing();
   // The plots share the height that the parts of fixed size leave.
   // The loop's lines keep room for three, so that nothing moves when one of them is wrapped.
   const float health_room = std::max(3.0F * line, view.health_px);
-  const float rows = static_cast<float>(std::clamp<std::size_t>(models.listed().size(), 2, 8)) + 1.0F;
+  const float rows =
+      static_cast<float>(std::clamp<std::size_t>(models.listed().size(), 2, 8)) + (shown.has_material ? 2.0F : 1.0F);
   const float table = rows * (ImGui::GetTextLineHeight() + 2.0F * ImGui::GetStyle().CellPadding.y + 1.0F) +
                       0.28F * ImGui::GetFontSize() + 3.0F;
   const float titles = line * 3.4F;
@@ -232,8 +235,8 @@ void draw_panel(ForceCurves& curves, LiveSession& session, const WindowView& sho
   const float rest = std::max(6.0F * line, ImGui::GetContentRegionAvail().y - health_room - table - centres - titles);
   const bool bins = !view.details || rest > 14.0F * line;
   curves.draw(shown, view, style, rest * (bins ? 0.34F : 0.52F), rest * (bins ? 0.29F : 0.48F));
-  draw_model_table(session, models, view, style, table);
-  if (centres > 0.0F) draw_centres(session, models, view);
+  draw_model_table(shown, view, style, table, actions);
+  if (centres > 0.0F) draw_centres(models, view, actions);
   if (bins) {
     section_title(style, view.verdict ? "ERROR / JND AGAINST TIME OF A TICK" : "ERROR AGAINST FORCE");
     ImGui::SameLine();

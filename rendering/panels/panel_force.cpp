@@ -17,6 +17,7 @@ constexpr double kDifference_jnd = 3.0;
 constexpr float kPredictedAlpha = 0.28F;
 // Share of the width for the curves over time; the curves over depth have the rest.
 constexpr float kTimeShare = 0.6F;
+constexpr std::size_t kLongestPress = 30'000;  // ticks
 // Largest number of points of a curve over depth: one for every few ticks in ten seconds.
 constexpr std::size_t kLoopPoints = 1500;
 
@@ -55,7 +56,10 @@ struct Drawing {
   const ModelsView& models() const { return shown.models; }
   float scale() const { return style.scale(); }
   Rgb colour(std::size_t slot) const { return slot_colour(models(), slot, style.theme()); }
-  Rgb reference() const { return reference_colour(style.theme()); }
+  // Green is the truth; a model that the others are compared with has its own colour.
+  Rgb reference() const {
+    return models().reference == kReferenceBlock ? reference_colour(style.theme()) : colour(models().reference);
+  }
   // Without a reference, the curves show the predicted error of the active model.
   bool predicts() const { return !models().compared && models().active() != nullptr; }
   double predicted_over_jnd(const CurveColumn& column) const {
@@ -86,12 +90,13 @@ struct Drawing {
     tip((words + "\nForce of every model, and in green what they are compared with.\n"
                  "The grey band is one just noticeable difference (JND) to either side.\n"
                  "Marks at the top: missed deadlines, and in red faults (L lists them).\n"
-                 "Drag to zoom, turn the wheel to scroll back, double-click or press Space to continue.")
+                 "Drag: blocks and numbers show that moment. Shift and drag: zoom. Wheel: scroll back.\n"
+                 "Double-click or Space: continue.")
             .c_str());
     ImGui::SameLine(width + ImGui::GetStyle().WindowPadding.x);
     section_title(style, "AGAINST DEPTH");
     tip("The same force against the depth of the tool. Loading and unloading differ (hysteresis).\n"
-        "Green: what the models are compared with; the active model in its colour.");
+        "Thin: what the models are compared with; thick: the active model. The dot is the moment that is shown.");
   }
 
   void draw_titles_of_error() const {
@@ -102,12 +107,12 @@ struct Drawing {
     ImGui::SameLine();
     if (models().out_of_domain()) {
       ImGui::TextColored(paint(style.colours().fault), "away from the recorded data");
-    } else if (view.time.paused) {
-      ImGui::TextDisabled("paused; Space continues");
+    } else if (models().stands) {
+      quiet_words(view.worst ? view.worst->words : "stands still; Space continues");
     } else {
-      quiet_words(difference ? "outside the band a hand could feel it" : "above 1 a hand could feel it");
+      quiet_words(difference ? "outside the band most people notice it" : "above 1 most people notice it");
     }
-    tip(difference ? "Model minus reference, in just noticeable differences: inside the band a hand cannot feel it.\n"
+    tip(difference ? "Model minus reference, in just noticeable differences: inside the band few people notice it.\n"
                      "V: its mean over 50 ms, as one line."
                    : "Mean difference over 50 ms, in just noticeable differences. Faint marks: the largest of a single "
                      "tick.\nV: the difference in its band.");
@@ -115,8 +120,9 @@ struct Drawing {
 
   void draw_curves(const TimePlot& plot, SlotRange range) const {
     for (const std::size_t slot : models().drawn()) {
-      plot.curve(ink(colour(slot)), (slot == models().selected ? kSelectedLine_px : kModelLine_px) * scale(),
-                 [&](const CurveColumn& column) { return range(column, slot); });
+      plot.curve(
+          ink(colour(slot)), (slot == models().selected ? kSelectedLine_px : kModelLine_px) * scale(),
+          [&](const CurveColumn& column) { return range(column, slot); }, slot_dashes(models(), slot));
     }
   }
 
@@ -144,8 +150,11 @@ struct Drawing {
   // Draws force against depth: the reference with its band, and the active model.
   void draw_loops(const ImVec2& size, double scale_N) const {
     const ForceHistory& history = *shown.history;
-    const std::size_t first = history.first_at(end_s - view.time.shown_s);
+    std::size_t first = history.first_at(end_s - view.time.shown_s);
     const std::size_t end = history.first_at(end_s);
+    // The whole press, also after a long hold.
+    for (std::size_t most = kLongestPress; first > 0 && first < end && most > 0 && history[first].in_contact; --most)
+      --first;
     double deepest_mm = std::isfinite(shown.usual_depth_m) ? 1e3 * shown.usual_depth_m : 1.0;
     for (std::size_t i = first; i < end; ++i) deepest_mm = std::max(deepest_mm, 1e3 * history[i].depth_m);
     const LivePlot plot(style, size,
@@ -177,6 +186,11 @@ struct Drawing {
       extend(model_points, point.depth_m, point.force_N[models().selected]);
     }
     flush();
+    const HistoryPoint& now = models().now;
+    const float now_N = models().active() != nullptr ? now.force_N[models().selected] : now.reference_N;
+    if (!models().stands || std::isnan(now_N)) return;
+    plot.list().AddCircleFilled({plot.x_px(1e3 * now.depth_m), plot.y_px(now_N)}, 4.0F * scale(),
+                                ink(style.colours().text));
   }
 
   void draw_force(const ImVec2& size, double scale_N) {

@@ -1,8 +1,10 @@
-#include "rendering/panels/panel_parts.h"
+#include "rendering/panels/panel.h"
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <sstream>
+#include <string_view>
 
 namespace palpate {
 
@@ -76,22 +78,41 @@ void begin_panel(const char* name, const SceneArea& area) {
   ImGui::SetNextWindowSize(area.size);
   ImGui::Begin(name, nullptr,
                ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
-                   ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoNav | ImGuiWindowFlags_NoBackground);
+                   ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoBackground);
 }
 
 void section_title(const UiStyle& style, const char* title) {
   ImGui::TextColored(paint(style.colours().text), "%s", title);
 }
 
-Rgb slot_colour(const ModelsView& models, std::size_t slot, Theme theme) {
-  const std::string& method = models.slots[slot].method;
-  const Rgb hue = method_colour(method, theme);
+namespace {
+
+// Which of the listed models of its method this is, from 0.
+std::size_t among_its_method(const ModelsView& models, std::size_t slot) {
+  const auto hue = [&](std::size_t i) { return method_colour(models.slots[i].method, Theme::light); };
   std::size_t which = 0;
   for (const std::size_t i : models.listed()) {
     if (i == slot) break;
-    if (method_colour(models.slots[i].method, theme) == hue) ++which;
+    if (hue(i) == hue(slot)) ++which;
   }
-  return method_colour(method, theme, which);
+  return which;
+}
+
+}  // namespace
+
+Rgb slot_colour(const ModelsView& models, std::size_t slot, Theme theme) {
+  return method_colour(models.slots[slot].method, theme, among_its_method(models, slot));
+}
+
+// A method's pattern follows from its place in the alphabet, so that it is the same in every session.
+Dashes slot_dashes(const ModelsView& models, std::size_t slot) {
+  constexpr Dashes kPatterns[] = {{0.0F, 0.0F}, {14.0F, 4.0F}, {7.0F, 3.0F}, {3.0F, 3.0F}, {22.0F, 7.0F}};
+  constexpr std::string_view kOrder[] = {"trend", "greedy", "kdtree", "random", "voxel"};
+  const std::string& method = models.slots[slot].method;
+  std::size_t place = 0;
+  for (std::size_t i = 0; i < std::size(kOrder); ++i)
+    if (method == kOrder[i]) place = i;
+  return kPatterns[(place + among_its_method(models, slot)) % std::size(kPatterns)];
 }
 
 void draw_mark(ImDrawList& list, const ImVec2& middle, float radius, bool paper, ImU32 colour, const UiStyle& style) {

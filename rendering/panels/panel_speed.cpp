@@ -135,7 +135,7 @@ struct SpeedPlot {
 
   // Draws what the JND is above its line, at the left or the right, where no model is.
   void draw_caption() {
-    const char* text = "a hand could tell";
+    const char* text = "above 1: most people notice it";
     const float width = ImGui::CalcTextSize(text).x, gap = 0.4F * line(), bottom = plot.y_px(0.0);
     ImVec4 box(plot.left() + gap, bottom - 1.1F * line(), plot.left() + gap + width, bottom);
     const ImVec4 right(plot.right() - gap - width, box.y, plot.right() - gap, box.w);

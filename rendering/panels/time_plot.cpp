@@ -106,7 +106,7 @@ const CurveColumn* CurveColumns::last() const noexcept {
 
 TimePlot::TimePlot(const UiStyle& style, const ImVec2& size, const Range& y, const char* y_unit, CurveTime& time,
                    double end_s, const CurveColumns& columns)
-    : LivePlot(style, size, {{end_s - time.shown_s - time.zero_s, end_s - time.zero_s}, y, "s", y_unit}),
+    : LivePlot(style, size, {{end_s - time.shown_s - time.zero_s, end_s - time.zero_s}, y, "s", y_unit, false, 0.0}),
       time_(time),
       end_s_(end_s),
       columns_(columns) {}
@@ -120,14 +120,17 @@ std::vector<std::vector<TimePlot::ColumnPixels>> TimePlot::runs(const ColumnRang
     if (std::isnan(values.from) || std::isnan(values.to)) {
       runs.emplace_back();
     } else {
-      runs.back().push_back({time_px(column.tick.loop_time_s), y_px(values.from), y_px(values.to)});
+      // Beyond the frame a curve runs along its edge.
+      const auto inside_px = [this](double y) { return std::clamp(y_px(y), top() + 1.0F, bottom() - 1.0F); };
+      runs.back().push_back({time_px(column.tick.loop_time_s), inside_px(values.from), inside_px(values.to)});
     }
   }
   return runs;
 }
 
-void TimePlot::curve(ImU32 colour, float thickness, const ColumnRange& range) const {
+void TimePlot::curve(ImU32 colour, float thickness, const ColumnRange& range, const Dashes& dashes) const {
   std::vector<ImVec2> points;
+  const float start_px = time_px(time_.zero_s);  // so that dashes move with the curve
   for (const std::vector<ColumnPixels>& run : runs(range)) {
     points.clear();
     for (const auto& [x, low, high] : run) {
@@ -136,7 +139,7 @@ void TimePlot::curve(ImU32 colour, float thickness, const ColumnRange& range) co
       points.emplace_back(x, falling ? high : low);
       if (low - high > 1.5F) points.emplace_back(x, falling ? low : high);
     }
-    line(points, colour, thickness);
+    line(points, colour, thickness, dashes, start_px);
   }
 }
 
@@ -168,19 +171,27 @@ double TimePlot::time_under_mouse() const {
   return x_at(std::clamp(ImGui::GetIO().MousePos.x, left(), right())) + time_.zero_s;
 }
 
+// The plot in which a drag began owns it, also where the mouse leaves it.
 void TimePlot::drag() {
-  if (hovered() && ImGui::IsMouseClicked(ImGuiMouseButton_Left)) time_.drag_from_s = time_under_mouse();
-  if (std::isnan(time_.drag_from_s)) return;
-  const float from_px = time_px(time_.drag_from_s);
-  const float to_px = time_px(time_under_mouse());
-  const bool dragged = std::abs(to_px - from_px) > kDrag_px;
-  if (!ImGui::IsMouseDown(ImGuiMouseButton_Left)) {
-    if (dragged) time_.zoom(time_.drag_from_s, time_under_mouse());
-    time_.drag_from_s = std::nan("");
-  } else if (dragged) {
+  const ImGuiIO& io = ImGui::GetIO();
+  if (hovered() && ImGui::IsMouseClicked(ImGuiMouseButton_Left)) {
+    time_.dragging = !io.KeyShift;
+    if (io.KeyShift) time_.zoom_from_s = time_under_mouse();
+  }
+  const ImVec2 began = io.MouseClickedPos[ImGuiMouseButton_Left];
+  if (began.x < left() || began.x > right() || began.y < top() || began.y > bottom()) return;
+  const bool down = ImGui::IsMouseDown(ImGuiMouseButton_Left);
+  if (time_.dragging && down) time_.drag_to(time_under_mouse(), end_s_);
+  if (time_.dragging && !down) time_.end_drag();
+  if (std::isnan(time_.zoom_from_s)) return;
+  const float from_px = time_px(time_.zoom_from_s), to_px = time_px(time_under_mouse());
+  if (down) {
     list().AddRectFilled({std::min(from_px, to_px), top()}, {std::max(from_px, to_px), bottom()},
                          ink(style_.colours().text, 0.10F));
+    return;
   }
+  if (std::abs(to_px - from_px) > kDrag_px) time_.zoom(time_.zoom_from_s, time_under_mouse());
+  time_.zoom_from_s = std::nan("");
 }
 
 bool TimePlot::handle_mouse(const ForceHistory& history) {
@@ -191,15 +202,16 @@ bool TimePlot::handle_mouse(const ForceHistory& history) {
       time_.pause(end_s_);
       time_.scroll_back(kWheelShare * time_.shown_s * wheel, history.size() > 0 ? history[0].loop_time_s : end_s_);
     }
-    if (ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left)) {
-      time_.run();
-      time_.drag_from_s = std::nan("");
-    }
+    if (ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left)) time_.run();
   }
-  if (!std::isnan(time_.hover_s)) {
-    const float x = time_px(time_.hover_s);
-    list().AddLine({x, top()}, {x, bottom()}, ink(style_.colours().quiet));
-  }
+  const auto mark = [&](double at_s, float thickness) {
+    if (std::isnan(at_s) || at_s > end_s_) return;
+    const float x = time_px(at_s);
+    list().AddLine({x, top()}, {x, bottom()}, ink(thickness > 1.0F ? style_.colours().text : style_.colours().quiet),
+                   thickness);
+  };
+  mark(time_.hover_s, 1.0F);
+  if (!std::isnan(time_.moment_s) || !std::isnan(time_.rest_s)) mark(time_.at_s(end_s_), 2.0F);
   return hovered();
 }
 

@@ -12,9 +12,8 @@
 
 #include "engine/tick/haptics_tick.h"
 #include "engine/tick/jnd.h"
-#include "rendering/panels/view_state.h"
+#include "rendering/panels/window_view.h"
 #include "rendering/ui/plot.h"
-#include "scenes/live/force_history.h"
 
 namespace palpate {
 
@@ -83,14 +82,14 @@ class TimePlot : public LivePlot {
            const CurveColumns& columns);
 
   // A curve through the ranges of the columns. A NaN interrupts it.
-  void curve(ImU32 colour, float thickness, const ColumnRange& range) const;
+  void curve(ImU32 colour, float thickness, const ColumnRange& range, const Dashes& dashes = {}) const;
   // Fills the ranges of the columns. A NaN interrupts the area.
   void fill(ImU32 colour, const ColumnRange& range) const;
   // Marks at the upper edge: a line for missed deadlines, a triangle for a fault.
   void fault_marks() const;
 
-  // The wheel pauses and scrolls; a drag zooms to its range and pauses; a double click resumes. Draws the range of the
-  // drag and the time under the mouse. Returns whether the mouse is over the plot.
+  // A drag moves blocks and numbers to the moment under the mouse, with Shift it zooms; the wheel scrolls; a double
+  // click resumes. Draws the range of the zoom and the moment. Returns whether the mouse is over the plot.
   bool handle_mouse(const ForceHistory& history);
   // Draws a box with readings beside the time under the mouse, if the mouse is over the plot.
   void draw_readings(const std::vector<Reading>& readings) const;

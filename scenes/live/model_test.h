@@ -42,6 +42,11 @@ class ModelTest {
   bool update(const SessionModels& models);
   // Whether the newest results are those of all ready models, timed together.
   bool complete() const noexcept { return complete_; }
+  // The recording of the tests; null: there is none, or a test is running.
+  const Recording* recording() const noexcept {
+    if (running_.valid()) return nullptr;
+    return replay_ != nullptr ? &replay_->recording() : made_ ? &*made_ : nullptr;
+  }
   // Number of tests with results.
   std::uint64_t results() const noexcept { return results_; }
 

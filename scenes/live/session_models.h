@@ -16,7 +16,6 @@
 #include "engine/live/live_tick.h"
 #include "scenes/live/fault_log.h"
 #include "scenes/scene/scene.h"
-#include "scenes/worker/model_request.h"
 #include "scenes/worker/model_worker.h"
 
 namespace palpate {
@@ -113,7 +112,9 @@ class SessionModels {
   // Shows the models of these requests, fits those that are missing and hides all others except models from files.
   // The active model stays active if it is shown; else the first model becomes active.
   void use_requests(const std::vector<ModelRequest>& requests);
-  // Removes a model permanently. Returns false, with a notice, for the last model.
+  // Shows one more model by its name, fitted if there is none yet; a notice says why not.
+  void add(const std::string& name);
+  // Removes a model permanently and cancels its fit. Returns false, with a notice, for the last model that is ready.
   bool remove(std::size_t slot);
   // The slots whose models were removed or replaced since the last call. Discard all results of theirs.
   std::vector<std::size_t> read_freed() { return std::exchange(freed_, {}); }
@@ -158,6 +159,7 @@ class SessionModels {
   };
 
   std::size_t add_slot(const ModelRequest& request);
+  std::optional<std::size_t> show(const ModelRequest& request);
   bool is_of_other_material(const Slot& slot) const;
   bool join(std::size_t index, const FinishedModel& finished);
   void unite_equal();

@@ -19,7 +19,7 @@
 #include "engine/base/result.h"
 #include "engine/live/haptics_loop.h"
 #include "engine/recording/recording_writer.h"
-#include "scenes/live/force_history.h"
+#include "scenes/live/comparison.h"
 
 namespace palpate {
 

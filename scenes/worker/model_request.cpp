@@ -1,4 +1,4 @@
-#include "scenes/worker/model_request.h"
+#include "scenes/worker/model_worker.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -55,6 +55,15 @@ const std::vector<LineUp>& line_ups() {
       {"Direct",
        "the interpolation of every sample",
        {kDirectMethod.name, kVoxelMethod.name, "trend+direct", "trend+greedy-100"}}};
+  return all;
+}
+
+const std::vector<MethodChoice>& method_choices() {
+  static const std::vector<MethodChoice> all = [] {
+    std::vector<MethodChoice> choices;
+    for (const ModelPlan& plan : all_plans()) choices.push_back({family_name(plan), plan.selects_centres()});
+    return choices;
+  }();
   return all;
 }
 

@@ -5,7 +5,7 @@
 #include <set>
 
 #include "engine/live/pacer.h"
-#include "rendering/panels/scene_overlay.h"
+#include "rendering/panels/panel.h"
 #include "tests/support/demo_window.h"
 
 namespace palpate {

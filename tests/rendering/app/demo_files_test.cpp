@@ -1,5 +1,5 @@
 // The files of the window, without a window.
-#include "rendering/app/demo_files.h"
+#include "rendering/app/demo_app.h"
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "rendering/panels/panel.h"
-#include "rendering/panels/scene_overlay.h"
+#include "rendering/panels/panel.h"
 #include "tests/support/message_parts.h"
 
 namespace palpate {

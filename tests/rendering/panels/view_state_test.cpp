@@ -1,9 +1,9 @@
-#include "rendering/panels/view_state.h"
+#include "rendering/panels/window_view.h"
 
 #include <gtest/gtest.h>
 
 #include "rendering/panels/panel.h"
-#include "rendering/ui/ui_style.h"
+#include "rendering/ui/ui.h"
 
 namespace palpate {
 namespace {

@@ -1,4 +1,4 @@
-#include "rendering/ui/ui_context.h"
+#include "rendering/ui/ui.h"
 
 #include <epoxy/gl.h>
 
@@ -9,7 +9,6 @@
 #include <string>
 #include <vector>
 
-#include "rendering/ui/ui_style.h"
 #include "tests/support/virtual_display.h"
 
 namespace palpate {

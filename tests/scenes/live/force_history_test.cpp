@@ -1,4 +1,4 @@
-#include "scenes/live/force_history.h"
+#include "scenes/live/comparison.h"
 
 #include <gtest/gtest.h>
 
