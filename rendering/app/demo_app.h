@@ -18,7 +18,7 @@
 #include "rendering/picture/block_view.h"
 #include "rendering/ui/ui.h"
 #include "scenes/live/live_session.h"
-#include "scenes/live/session_recordings.h"
+#include "scenes/live/session_recorder.h"
 #include "scenes/plot/plot.h"
 
 namespace palpate {
@@ -161,6 +161,7 @@ class DemoApp {
   void run_held(const std::vector<KeyPress>& pressed, bool in_list) const;
   void run_pressed(const KeyPress& press, bool in_list) const;
   bool runs(const WindowCommand& command, int key, bool in_list) const;
+  bool press_focused(const KeyPress& press);
   void handle_exhibit_key(const KeyPress& press);
   bool is_down(int key) const;
   std::vector<int> tapped() const;

@@ -155,6 +155,7 @@ std::vector<WindowCommand> DemoApp::make_commands() {
                            session_->controls().scale = {};
                          }),
                  [this] { return view_.scales_force; }),
+      hint("Tab", "moves a focus through the buttons; Enter or Space presses it"),
       hint("a row", "Shift and click: two models beside the truth; right button: renames it; x: takes it out"),
       hint("on the curves", "drag: the moment that is shown; Shift and drag: zoom; wheel: scroll; double click: go on"),
       when(When::held,
@@ -256,6 +257,7 @@ void DemoApp::save(int what) {
 void DemoApp::close_windows() {
   view_.dialogs = {};
   view_.details = false;
+  view_.focus = -1;
 }
 
 void DemoApp::use_line_up(const LineUp& line_up) {

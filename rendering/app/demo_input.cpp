@@ -59,7 +59,30 @@ void DemoApp::run_commands(const std::vector<KeyPress>& keys) {
   const bool menu = ImGui::IsPopupOpen(nullptr, ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel);
   const bool in_list = menu || view_.dialogs.any();
   run_held(keys, in_list);
-  for (const KeyPress& press : keys) view_.exhibit.on ? handle_exhibit_key(press) : run_pressed(press, in_list);
+  for (const KeyPress& press : keys) {
+    if (view_.exhibit.on) {
+      handle_exhibit_key(press);
+    } else if (in_list || !press_focused(press)) {
+      run_pressed(press, in_list);
+    }
+  }
+}
+
+// Tab moves a focus through the buttons; Enter or Space presses the one that has it. Returns whether it did.
+bool DemoApp::press_focused(const KeyPress& press) {
+  std::vector<const WindowCommand*> buttons;
+  for (const WindowCommand& command : commands_)
+    if (command.bar) buttons.push_back(&command);
+  const int count = static_cast<int>(buttons.size()) + 1;  // with that of the menu
+  if (press.key == GLFW_KEY_TAB) {
+    const bool back = (press.modifiers & GLFW_MOD_SHIFT) != 0;
+    view_.focus = back ? (view_.focus <= 0 ? count : view_.focus) - 1 : (view_.focus + 1) % count;
+    return true;
+  }
+  if (view_.focus < 0 || (press.key != GLFW_KEY_ENTER && press.key != GLFW_KEY_SPACE)) return false;
+  const auto focused = static_cast<std::size_t>(view_.focus);
+  focused < buttons.size() ? buttons[focused]->run(0) : void(view_.opens_menu = true);
+  return true;
 }
 
 void DemoApp::handle_exhibit_key(const KeyPress& press) {
@@ -76,9 +99,7 @@ bool DemoApp::runs(const WindowCommand& command, int key, bool in_list) const {
   constexpr int kOfLists[] = {GLFW_KEY_UP,    GLFW_KEY_DOWN,      GLFW_KEY_LEFT, GLFW_KEY_RIGHT, GLFW_KEY_PAGE_UP,
                               GLFW_KEY_SPACE, GLFW_KEY_PAGE_DOWN, GLFW_KEY_HOME, GLFW_KEY_END,   GLFW_KEY_ENTER};
   if (command.replay && session_->replay() == nullptr) return false;
-  // Tab moves a focus through buttons and the table; Enter and Space press what has it.
-  const bool focused = ImGui::GetIO().NavVisible && (key == GLFW_KEY_SPACE || key == GLFW_KEY_ENTER);
-  return !focused && (!in_list || std::ranges::find(kOfLists, key) == std::end(kOfLists));
+  return !in_list || std::ranges::find(kOfLists, key) == std::end(kOfLists);
 }
 
 bool DemoApp::is_down(int key) const { return std::ranges::find(down_, key) != down_.end(); }

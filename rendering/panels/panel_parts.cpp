@@ -78,7 +78,7 @@ void begin_panel(const char* name, const SceneArea& area) {
   ImGui::SetNextWindowSize(area.size);
   ImGui::Begin(name, nullptr,
                ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
-                   ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoBackground);
+                   ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoNav | ImGuiWindowFlags_NoBackground);
 }
 
 void section_title(const UiStyle& style, const char* title) {

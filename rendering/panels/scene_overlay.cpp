@@ -244,16 +244,23 @@ struct Overlay {
 
   void draw_buttons() const {
     ImGui::SetNextWindowPos({area.at.x + 2.0F, area.at.y + area.size.y - 2.0F}, ImGuiCond_Always, {0.0F, 1.0F});
-    ImGui::Begin("buttons", nullptr, kFloating & ~ImGuiWindowFlags_NoNav);
+    ImGui::Begin("buttons", nullptr, kFloating);
     const float side = button_px(style);
-    bool menu = false;
+    int place = 0;
+    const auto show_focus = [&] {
+      if (place++ != view.focus) return;
+      ImGui::GetWindowDrawList()->AddRect(ImGui::GetItemRectMin(), ImGui::GetItemRectMax(), text_ink(false), 4.0F, 0,
+                                          3.0F);
+    };
     for (const WindowCommand& command : commands) {
       if (!command.bar) continue;
       if (command_button(command, side)) command.run(0);
+      show_focus();
       ImGui::SameLine(0.0F, 4.0F);
     }
-    menu = std::exchange(view.opens_menu, false);
+    const bool menu = std::exchange(view.opens_menu, false);
     if (ImGui::Button("Menu", {0.0F, side}) || menu) ImGui::OpenPopup("menu");
+    show_focus();
     tip("All other commands and their keys (M)");
     if (ImGui::BeginPopup("menu")) {
       for (const WindowCommand& command : commands) {

@@ -23,7 +23,7 @@
 #include "rendering/picture/block_view.h"
 #include "rendering/ui/colours.h"
 #include "scenes/live/live_session.h"
-#include "scenes/live/session_recordings.h"
+#include "scenes/live/session_recorder.h"
 
 namespace palpate {
 
@@ -225,6 +225,7 @@ struct ViewState {
   FrameFigures frames;
   std::vector<Toast> toasts;
   bool scales_force = false;              // shows the sliders that scale the rendered force
+  int focus = -1;                                      // the button that Tab has reached; -1: none
   bool opens_menu = false;                // the next frame opens the menu
   bool exaggerated = false;               // arrows show ten times the difference
   int requested_centres = 0;              // last value of the slider of centres

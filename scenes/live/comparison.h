@@ -1,7 +1,6 @@
 // Compares the models of a session with a reference force, tick by tick. It has, for every slot, the errors of these
-// ticks, the sustained error, the dent that is drawn, and the forces of the last kHistory_s at 1 kHz for curves: one point
-// per tick that read a sample.
-// Thread guarantee: one thread.
+// ticks, the sustained error, the dent that is drawn, and the forces of the last kHistory_s at 1 kHz for curves: one
+// point per tick that read a sample. Thread guarantee: one thread.
 #pragma once
 
 #include <algorithm>
@@ -212,7 +211,7 @@ struct ModelFigures {
   double force_N = 0.0;
   double predicted_error_N = std::numeric_limits<double>::quiet_NaN();  // of the force, 95 %; NaN: unknown
   bool out_of_domain = false;
-  // Over the same samples for all compared models: those of the test (model_test.h); without a recording to test on,
+  // Over the same samples for all compared models: those of the test (ModelTest); without a recording to test on,
   // those of the ticks (StreamErrors).
   ErrorSummary errors;
   Interval p99_interval{kUnknown, kUnknown};  // of the test

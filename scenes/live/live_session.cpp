@@ -12,7 +12,7 @@
 #include "models/model/fitted_model.h"
 #include "models/samples/recording_faults.h"
 #include "scenes/evaluation/evaluate.h"
-#include "scenes/live/session_recordings.h"
+#include "scenes/live/session_recorder.h"
 #include "scenes/material/rig.h"
 #include "scenes/scene/folders.h"
 

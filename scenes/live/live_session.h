@@ -19,7 +19,6 @@
 #include "engine/tick/jnd.h"
 #include "scenes/live/comparison.h"
 #include "scenes/live/fault_log.h"
-#include "scenes/live/model_test.h"
 #include "scenes/live/session_models.h"
 #include "scenes/live/session_recorder.h"
 #include "scenes/live/verdict.h"
@@ -37,7 +36,7 @@ struct SessionRequest {
   // set as well is set apart for the test, if models are fitted to the rest or were (this names it).
   std::string test{}, device = "auto";
   std::vector<std::string> models{};  // methods or model files; empty: those of `line_up`
-  std::string line_up{};  // a name of line_ups() (model_request.h); empty or unknown: the scene's default models
+  std::string line_up{};  // a name of line_ups() (model_worker.h); empty or unknown: the scene's default models
   // Additional models, of an earlier session (SessionModels::requests). `refits` false: the session has only these.
   std::vector<ModelRequest> kept{};
   bool refits = true;

@@ -24,6 +24,21 @@ TEST(CurveTime, ZoomsStopsAndGoesOn) {
   EXPECT_DOUBLE_EQ(time.shown_s, kShown_s);
 }
 
+TEST(CurveTime, ADragShowsAMomentAndReturns) {
+  CurveTime time;
+  EXPECT_DOUBLE_EQ(time.at_s(100.0), 100.0);
+  time.drag_to(97.0, 100.0);
+  time.drag_to(96.0, 105.0);
+  EXPECT_DOUBLE_EQ(time.at_s(110.0), 96.0);
+  EXPECT_DOUBLE_EQ(time.end_s(110.0), 100.0) << "the curves stand still meanwhile";
+  time.end_drag();
+  EXPECT_DOUBLE_EQ(time.at_s(110.0), 110.0) << "now";
+  time.pause(120.0);
+  time.drag_to(115.0, 120.0);
+  time.end_drag();
+  EXPECT_DOUBLE_EQ(time.at_s(130.0), 120.0) << "stopped before, stopped after";
+}
+
 TEST(Layout, ThePanelIsBesideTheSceneOrBelowIt) {
   for (const ImVec2 window : {ImVec2(1280, 720), ImVec2(900, 600), ImVec2(800, 1050), ImVec2(2560, 1440)}) {
     const WindowLayout layout = lay_out(window);

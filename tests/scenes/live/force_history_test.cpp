@@ -11,7 +11,7 @@ HistoryPoint point_at(double loop_time_s) {
   return point;
 }
 
-TEST(ForceHistory, KeepsTheLastTwoMinutesInOrder) {
+TEST(ForceHistory, KeepsTheLastMinuteInOrder) {
   ForceHistory history;
   EXPECT_EQ(history.size(), 0u);
   EXPECT_EQ(history.first_at(0.0), 0u);
