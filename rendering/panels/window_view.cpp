@@ -173,6 +173,7 @@ std::string table_csv(const ModelsView& models) {
 WindowView window_view(const LiveSession& session, const ViewState& view) {
   WindowView shown;
   shown.history = view.worst && view.worst->history ? view.worst->history.get() : &session.comparison().history();
+  if (view.worst) shown.of_test = view.worst->history;
   shown.models = models_view(session, view, *shown.history);
   shown.health = {.loop = session.loop().statistics(),
                   .scheduling = session.loop().scheduling(),

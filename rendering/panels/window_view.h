@@ -225,7 +225,7 @@ struct ViewState {
   FrameFigures frames;
   std::vector<Toast> toasts;
   bool scales_force = false;              // shows the sliders that scale the rendered force
-  int focus = -1;                                      // the button that Tab has reached; -1: none
+  int focus = -1;                         // the button that Tab has reached; -1: none
   bool opens_menu = false;                // the next frame opens the menu
   bool exaggerated = false;               // arrows show ten times the difference
   int requested_centres = 0;              // last value of the slider of centres
@@ -309,7 +309,8 @@ struct WindowView {
   double now_s = 0.0;          // loop time at the right edge of running curves: now; of a paused replay its last tick
   double usual_force_N = 0.0;  // the axes extend at least to this force and this depth
   double usual_depth_m = 0.0;
-  const ForceHistory* history = nullptr;  // of the session or of a test; not null in a result of window_view
+  const ForceHistory* history = nullptr;        // of the session or of a test; not null in a result of window_view
+  std::shared_ptr<const ForceHistory> of_test;  // keeps that of a test
 };
 
 // The functions that panels, overlay, dialogs and exhibit call. A slot is the first argument.
