@@ -112,7 +112,7 @@ TEST(DemoFiles, AnotherProgramsTableIsOfferedAsARecordingWithTheGuesses) {
   ASSERT_EQ(view.dialogs.recording_roles.recordings.size(), 1u);
   const ConvertedRecording& offered = view.dialogs.recording_roles.recordings[0];
   ASSERT_GE(offered.words.size(), 4u);
-  EXPECT_EQ(offered.words[2].rfind("position: column 2 \"Weg [mm]\" ", 0), 0u) << offered.words[2];
+  EXPECT_EQ(offered.words[3].rfind("position: column 2 \"Weg [mm]\" ", 0), 0u) << offered.words[3];
   EXPECT_EQ(offered.path.rfind(folder.file("data/"), 0), 0u) << offered.path;
   const auto recording = read_recording(offered.path);
   ASSERT_TRUE(recording.ok()) << recording.error().message;
