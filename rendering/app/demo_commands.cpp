@@ -227,9 +227,10 @@ void DemoApp::use_worst(std::size_t slot) {
   auto found = session_->worst(slot, !had_test, view_.time.zero_s);
   if (!found) return notify("no error is known yet: press the block, or wait for the test", false);
   constexpr double kAfter_s = 1.5, kShown_around_s = 5.0;
+  const ForceHistory& ticks = found->history ? *found->history : session_->comparison().history();
   view_.time.run();
   view_.time.pause(found->at_s + kAfter_s);
-  view_.time.shown_s = kShown_around_s;
+  view_.time.shown_s = std::clamp(found->at_s + kAfter_s - ticks[0].loop_time_s, kLeastShown_s, kShown_around_s);
   view_.time.rest_s = found->at_s;
   view_.worst = WorstMoment{std::move(*found), slot};
   if (session_->replay() != nullptr) session_->replay()->pause(true);

@@ -28,10 +28,10 @@ constexpr const char* kPictureHelp[] = {
     "of a press within the JND (the column % in JND), but the largest errors (99 %) may grow."};
 
 constexpr std::pair<int, const char*> kKeyNames[] = {
-    {GLFW_KEY_SPACE, "Space"},        {GLFW_KEY_HOME, "Home"},   {GLFW_KEY_BACKSPACE, "Backspace"},
-    {GLFW_KEY_ESCAPE, "Esc"},         {GLFW_KEY_UP, "Up"},       {GLFW_KEY_DOWN, "Down"},
-    {GLFW_KEY_LEFT, "Left"},          {GLFW_KEY_RIGHT, "Right"}, {GLFW_KEY_PAGE_UP, "Page Up"},
-    {GLFW_KEY_PAGE_DOWN, "Page Down"}};
+    {GLFW_KEY_SPACE, "Space"},   {GLFW_KEY_HOME, "Home"},   {GLFW_KEY_BACKSPACE, "Backspace"},
+    {GLFW_KEY_ESCAPE, "Esc"},    {GLFW_KEY_UP, "Up"},       {GLFW_KEY_DOWN, "Down"},
+    {GLFW_KEY_LEFT, "Left"},     {GLFW_KEY_RIGHT, "Right"}, {GLFW_KEY_PAGE_UP, "PgUp"},
+    {GLFW_KEY_PAGE_DOWN, "PgDn"}};
 
 // The room of a dialog: the width of the picture, so that the panel stays visible beside it.
 ImVec2 dialog_room() { return {lay_out(ImGui::GetIO().DisplaySize).scene.size.x, ImGui::GetIO().DisplaySize.y}; }
@@ -59,7 +59,7 @@ bool list_entry(const std::string& text, bool selected = false, bool enabled = t
   return chosen || (enabled && ImGui::IsItemFocused() && enter_pressed());
 }
 
-// Explains the picture, and lists the commands in two columns.
+// Explains the picture, and lists the commands in two columns, in one with large texts.
 void draw_help(ViewState& view, const std::vector<WindowCommand>& commands) {
   if (!begin_dialog("Help", view.dialogs.help)) return;
   const float unit = ImGui::GetFontSize(), all = dialog_room().x;
@@ -68,15 +68,15 @@ void draw_help(ViewState& view, const std::vector<WindowCommand>& commands) {
     keys = std::max(keys, ImGui::CalcTextSize(shown_keys(command).c_str()).x);
     text = std::max(text, ImGui::CalcTextSize(command.help.c_str()).x);
   }
-  text = std::min(text, 0.5F * all - 4.0F * unit - keys);
-  ImGui::PushTextWrapPos(0.9F * all);
-  for (const char* sentence : kPictureHelp) ImGui::TextWrapped("%s", sentence);
-  ImGui::PopTextWrapPos();
+  const float half = 0.5F * all - 3.0F * unit - keys;
+  const bool one = half < 12.0F * unit;
+  text = std::min(text, one ? all - 5.0F * unit - keys : half);
+  for (const char* sentence : kPictureHelp) ImGui::TextUnformatted(in_lines(sentence, all - 4.0F * unit).c_str());
   ImGui::Separator();
-  if (ImGui::BeginTable("keys", 4, ImGuiTableFlags_NoSavedSettings)) {
-    for (const float width : {keys + 0.5F * unit, text, keys + 0.5F * unit, text})
-      ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthFixed, width);
-    const std::size_t rows = (commands.size() + 1) / 2;
+  if (ImGui::BeginTable("keys", one ? 2 : 4, ImGuiTableFlags_NoSavedSettings)) {
+    for (int column = 0; column < (one ? 2 : 4); ++column)
+      ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthFixed, column % 2 == 0 ? keys + 0.5F * unit : text);
+    const std::size_t rows = one ? commands.size() : (commands.size() + 1) / 2;
     for (std::size_t row = 0; row < rows; ++row) {
       for (std::size_t i = row; i < commands.size(); i += rows) {
         ImGui::TableNextColumn();

@@ -278,12 +278,13 @@ std::vector<BlockPose> Exhibit::shown_poses(const WindowView& shown, Theme theme
 }
 
 void Exhibit::begin(const WindowView& shown) {
+  farewell_ = false;
   (void)game_.begin(ready_models(shown), has_reference(shown), shown.renders_force);
 }
 
 void Exhibit::forget(ViewState& view, const WindowActions& actions) {
   game_.reset();
-  ready_ = repeats_ = false;
+  ready_ = repeats_ = farewell_ = false;
   forget_strokes();
   language_ = 0;
   host_ = false;

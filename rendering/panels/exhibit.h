@@ -4,7 +4,7 @@
 //             again with the worst model, and so on; a sentence invites to play
 //   press     two blocks without names, and a live plot of their difference; which one is the computer's?
 //   reveal    the press with the largest difference in slow motion (ExhibitReveal), then names and result
-//   score     all models judged by the visitor's own presses, the score of the day, one sentence to take home
+//   score     all models judged by the visitor's own presses; then one sentence to take home, and the score of the day
 //
 // A key presses the button that shows it; the 1 and 2 of the keypad count as 1 and 2, its Enter and Space as Enter. If
 // there is no button 2, 1 and Enter both press the only button. L changes the language. The tool can touch the block
@@ -89,6 +89,8 @@ class Exhibit {
   const ExhibitTally& tally() const noexcept { return tally_; }
   // The middles of the buttons of the last frame, by their keys.
   const std::map<std::string, ImVec2>& buttons() const noexcept { return buttons_; }
+  // Whether all of the last screen is above its foot.
+  bool fits() const noexcept { return fits_; }
   // The sentences of the last frame, from the top.
   const std::vector<std::string>& said() const noexcept { return said_; }
 
@@ -131,7 +133,9 @@ class Exhibit {
   double moved_s_ = -1e9;     // loop time of the visitor's last action
   double seen_s_ = 0.0;       // loop time of the last processed tick
   double device_at_m_ = 0.0;  // position of the device's tool at its last movement
-  bool revealed_ = false;     // the reveal of this round has begun, and its result is in the tally
+  bool farewell_ = false;     // the second screen of the score
+  bool fits_ = true;
+  bool revealed_ = false;  // the reveal of this round has begun, and its result is in the tally
 };
 
 }  // namespace palpate

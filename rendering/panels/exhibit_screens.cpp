@@ -48,7 +48,7 @@ struct Exhibit::Screens {
   std::string number(double value) const {
     return value <= 0.0 ? "0" : localised(fixed(std::max(0.01, value), value < 1.0 ? 2 : 1));
   }
-  std::string newtons(double force_N) const { return localised(fixed(force_N, 1)) + " N"; }
+  std::string newtons(double force_N) const { return localised(fixed(force_N, force_N < 0.95 ? 2 : 1)) + " N"; }
 
   void say(const std::string& text) {
     ImGui::TextUnformatted(in_lines(text, ImGui::GetContentRegionAvail().x).c_str());
@@ -94,7 +94,7 @@ struct Exhibit::Screens {
     say_quietly(largest > 0.0 ? words()("so_far", number(largest)) : words()("in_band"));
     const double range = std::max(kLeastRange_jnd, round_up(1.05 * largest));
     ImGui::PushFont(style.fonts().body);  // of the axes
-    const float height = std::max(bottom() - ImGui::GetCursorScreenPos().y, 4.0F * body());
+    const float height = bottom() - ImGui::GetCursorScreenPos().y;
     const LivePlot plot(style, {ImGui::GetContentRegionAvail().x, height},
                         {{0.0, seconds}, {-range, range}, "s", "", false, 0.0});
     ImGui::PopFont();
@@ -221,19 +221,15 @@ struct Exhibit::Screens {
     const std::uint64_t answers = exhibit.tally_.answers[level], fooled = exhibit.tally_.fooled[level];
     if (answers == 0) return;
     const ExhibitModel& model = game.line_up().levels[level];
-    const float height = 0.6F * body(), all = ImGui::GetContentRegionAvail().x;
+    say_quietly(words()("name_" + kind_of(model), centres_of(model)) + ": " +
+                words()("day_of", std::to_string(fooled), std::to_string(answers)));
+    const float height = 0.8F * body(), all = ImGui::GetContentRegionAvail().x;
     const ImVec2 at = ImGui::GetCursorScreenPos();
-    ImDrawList& list = *ImGui::GetWindowDrawList();
-    list.AddRect({at.x, at.y}, {at.x + 0.5F * all, at.y + height}, ink(style.colours().edge));
     const float share = static_cast<float>(fooled) / static_cast<float>(answers);
-    list.AddRectFilled(at, {at.x + 0.5F * all * share, at.y + height}, ink(colour_of(model)));
-    const std::string text = words()("day_of", std::to_string(fooled), std::to_string(answers));
-    text_on_panel({at.x + 0.53F * all, at.y - 0.2F * height}, text);
+    ImDrawList& list = *ImGui::GetWindowDrawList();
+    list.AddRect(at, {at.x + all, at.y + height}, ink(style.colours().edge));
+    list.AddRectFilled(at, {at.x + all * share, at.y + height}, ink(colour_of(model)));
     ImGui::Dummy({1.0F, height});
-  }
-  void text_on_panel(const ImVec2& at, const std::string& text) {
-    ImGui::GetWindowDrawList()->AddText(style.fonts().body, body(), at, ink(style.colours().quiet), text.c_str());
-    exhibit.said_.push_back(text);
   }
 
   // "half a millionth of a second"
@@ -246,20 +242,26 @@ struct Exhibit::Screens {
 
   void draw_score() {
     const std::size_t levels = game.rounds().size();
+    if (exhibit.farewell_) return draw_farewell(levels);
     say(words()("score"));
     double range = 2.0;
     for (std::size_t i = 0; i < levels; ++i) range = std::max(range, 1.05 * game.largest_over_jnd(i));
     for (std::size_t i = 0; i < levels; ++i) draw_bar(i, range);
     say_quietly(words()("bars"));
-    space(0.3F);
-    say_quietly(words()("day"));
-    for (std::size_t i = 0; i < levels; ++i) draw_day(i);
-    space(0.3F);
+    space(0.5F);
+    exhibit.farewell_ = button(words()("next"), "Enter");
+  }
+
+  // The sentence to take home, and the score of the day.
+  void draw_farewell(std::size_t levels) {
     const bool hidden = game.largest_over_jnd(levels - 1) <= 1.0;
     // The time of the tick of the best model alone, as everywhere.
     const ModelView& best = shown.models.slots[game.line_up().levels[levels - 1].slot];
     say(words()(hidden ? "take_home" : "take_home_noticed", time_words(best.tick_ns())));
-    space(0.3F);
+    space(0.4F);
+    say_quietly(words()("day"));
+    for (std::size_t i = 0; i < levels; ++i) draw_day(i);
+    space(0.5F);
     if (button(words()("again"), "Enter")) exhibit.begin(shown);
   }
 
@@ -327,6 +329,7 @@ void Exhibit::draw(const WindowView& shown, const BlockView& blocks, const UiSty
                                &Screens::draw_score};  // in the order of State
   (screens.*kScreens[static_cast<std::size_t>(game_.state())])();
   ImGui::PopFont();
+  fits_ = ImGui::GetCursorScreenPos().y < screens.bottom() + screens.body();
   screens.draw_foot();
   ImGui::End();
   if (host_) screens.draw_host();

@@ -212,7 +212,8 @@ HealthWords health_words(const HealthView& health, double recent_fps, bool detai
             false};
   }
   return {text_of("tick p99 %.0f us, late p99 %.0f us", statistics.tick.p99_us, statistics.lateness.p99_us) +
-              ", missed " + std::to_string(statistics.missed_deadlines) + text_of(", %.0f fps", recent_fps),
+              ", missed " + std::to_string(statistics.missed_deadlines) +
+              (recent_fps > 0.0 ? text_of(", %.0f fps", recent_fps) : ""),
           false};
 }
 
@@ -233,7 +234,8 @@ void draw_panel(ForceCurves& curves, const WindowView& shown, ViewState& view, c
       std::ranges::any_of(models.drawn(), [&](std::size_t i) { return models.slots[i].takes_centres; });
   const float centres = has_centres ? ImGui::GetFrameHeightWithSpacing() : 0.0F;
   const float rest = std::max(6.0F * line, ImGui::GetContentRegionAvail().y - health_room - table - centres - titles);
-  const bool bins = !view.details || rest > 14.0F * line;
+  // Where the panel is too low for three plots, the last one goes.
+  const bool bins = rest > (view.details ? 14.0F : 11.0F) * line;
   curves.draw(shown, view, style, rest * (bins ? 0.34F : 0.52F), rest * (bins ? 0.29F : 0.48F));
   draw_model_table(shown, view, style, table, actions);
   if (centres > 0.0F) draw_centres(models, view, actions);

@@ -46,8 +46,9 @@ void text_at(ImFont* font, const ImVec2& at, ImU32 colour, const std::string& te
 
 // `text`, cut at a blank and with "..." at its end where it is wider than `room` pixels.
 std::string fitting(const std::string& text, float room);
-// Breaks lines of `width` at blanks only; Dear ImGui would also break after the decimal point of a number.
-std::string in_lines(const std::string& text, float width);
+// Breaks lines of `width` at blanks only; Dear ImGui would also break after the decimal point of a number. `font`:
+// null: the present one.
+std::string in_lines(const std::string& text, float width, ImFont* font = nullptr);
 // Draws secondary text on the rest of the line. Where it does not fit it is cut, and a tooltip has all of it.
 void quiet_words(const std::string& text);
 // Begins an ImGui window that fills `area`. Call ImGui::End afterwards.

@@ -25,6 +25,7 @@ double error_now_N(const ModelsView& models, Slot slot) {
 
 std::string whole(double value) { return with_thousands(fixed(value, 0)); }
 std::string two_decimals(double value) { return fixed(value, 2); }
+std::string share(double percent) { return fixed(0.01 * std::floor(100.0 * percent), 2); }
 std::string signed_mN(double value_N) {
   const std::string text = fixed(1e3 * value_N, 0);
   return text.front() == '-' ? text : "+" + text;
@@ -60,7 +61,7 @@ constexpr Column kTable[kColumns] = {
      [](const ModelsView& models, Slot slot) {
        return with_samples(models.slots[slot], 100.0 * models.slots[slot].errors.within_jnd);
      },
-     two_decimals},
+     share},
     {"ns",
      "Time of a whole tick of this model alone (motion, features, force), nanoseconds: the median of six\n"
      "interleaved measurements. The report, the plot below and the headline have the same",

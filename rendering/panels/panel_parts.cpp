@@ -46,12 +46,13 @@ std::string fitting(const std::string& text, float room) {
   return {};
 }
 
-std::string in_lines(const std::string& text, float width) {
+std::string in_lines(const std::string& text, float width, ImFont* font) {
+  if (font == nullptr) font = ImGui::GetFont();
   std::string lines, line;
   std::istringstream words(text);
   for (std::string word; words >> word;) {
     const std::string longer = line.empty() ? word : line + " " + word;
-    const bool fits = line.empty() || ImGui::CalcTextSize(longer.c_str()).x <= width;
+    const bool fits = line.empty() || text_size(font, longer).x <= width;
     if (!fits) lines += line + "\n";
     line = fits ? longer : word;
   }

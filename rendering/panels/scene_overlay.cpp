@@ -32,7 +32,7 @@ float big_number_height(const UiStyle& style, float lift) {
 struct Headline {
   std::string words;
   ImVec2 at;
-  float room;  // the width to which it is wrapped
+  float room;  // the width to which its detail is wrapped
   float detail_px, below_px;
 };
 Headline headline_of(const Verdict& verdict, const UiStyle& style, const SceneArea& area) {
@@ -44,8 +44,10 @@ Headline headline_of(const Verdict& verdict, const UiStyle& style, const SceneAr
   Headline headline{verdict.headline, {area.at.x + 0.7F * line + indent, top}, room, top, top};
   // No line ends between a number and its unit.
   std::string& words = headline.words;
-  for (std::size_t i = 0; (i = words.find(" %", i)) != std::string::npos;) words.replace(i, 1, "\u00A0");
-  headline.detail_px = headline.below_px = top + text_size(fonts.heading, words, headline.room).y;
+  for (const char* unit : {" %", " us"})
+    for (std::size_t i = 0; (i = words.find(unit, i)) != std::string::npos;) words.replace(i, 1, "\u00A0");
+  words = in_lines(words, room, fonts.heading);
+  headline.detail_px = headline.below_px = top + text_size(fonts.heading, words).y;
   if (!verdict.detail.empty()) {
     headline.detail_px += 0.1F * line;
     headline.below_px = headline.detail_px + text_size(fonts.body, verdict.detail, headline.room).y;
@@ -138,20 +140,9 @@ struct Overlay {
                 models().slots[*verdict.chosen].paper, ink(slot_colour(models(), *verdict.chosen, style.theme())),
                 style);
     }
-    text_at(fonts().heading, headline.at, text_ink(!verdict.chosen), headline.words, headline.room);
+    text_at(fonts().heading, headline.at, text_ink(!verdict.chosen), headline.words);
     text_at(fonts().body, {headline.at.x, headline.detail_px}, text_ink(true), verdict.detail, headline.room);
     return headline.below_px;
-  }
-
-  // Draws a text in the middle on a plate, because it may cover the blocks. Returns the y below it.
-  float draw_plated(const std::string& text, float top_px) const {
-    if (text.empty()) return top_px;
-    const float wrap = 0.8F * area.size.x, pad = 0.4F * line();
-    const ImVec2 size = text_size(fonts().body, text, wrap);
-    const ImVec2 at(area.at.x + 0.5F * (area.size.x - size.x), top_px + pad);
-    draw_plate(list(), at, size, {2.0F * pad, pad}, ink(colours().raised), ink(colours().raised));
-    text_at(fonts().body, at, text_ink(false), text, wrap);
-    return at.y + size.y + 2.0F * pad;
   }
 
   // The error and the time of a model, as in the table.
@@ -181,7 +172,8 @@ struct Overlay {
       std::string figures = reference ? "what all are compared with" : figures_of(*model);
       // Too little room: smaller, then shorter.
       ImFont* font = text_size(fonts().heading, name).x < room ? fonts().heading : fonts().body;
-      name = fitting(name, std::max(room, 4.0F * line()));
+      if (text_size(font, name).x > room) name.erase(std::min(name.find('-'), name.size()));
+      if (text_size(font, name).x > room) name = number_of(slots[i]);
       if (text_size(fonts().body, figures).x > room) figures = figures.substr(0, figures.find(", "));
       if (text_size(fonts().body, figures).x > room) figures.clear();
       const ImVec2 above = text_size(font, name), below = text_size(fonts().body, figures);
@@ -209,7 +201,8 @@ struct Overlay {
   }
 
   // Draws the error of the active model as a large number with its description, and the colour scale of errors.
-  void draw_big_number(float lift) const {
+  // Returns the x at the right of its texts.
+  float draw_big_number(float lift) const {
     const ImVec2 corner(area.at.x + 1.1F * line(), area.at.y + area.size.y - lift);
     const BigNumber big = big_number(models());
     const float y = area.at.y + area.size.y - big_number_height(style, lift);
@@ -224,7 +217,8 @@ struct Overlay {
     const ImVec2 beside(corner.x + std::max(usual.x, text_size(fonts().big, big.number).x) + 0.7F * line(),
                         y + 0.30F * usual.y);
     const float room = area.at.x + area.size.x - beside.x - 0.5F * line();
-    text_at(fonts().body, beside, text_ink(false), fitting(big.what, room));
+    const std::string what = fitting(big.what, room);
+    text_at(fonts().body, beside, text_ink(false), what);
     text_at(fonts().body, {beside.x, beside.y + 1.15F * line()}, error_ink(big.press_over_jnd, true), big.below);
     const float width = 11.0F * line(), top = y + usual.y + 0.35F * line(), bottom = top + 0.55F * line();
     for (int i = 0; i < 40; ++i) {
@@ -240,6 +234,7 @@ struct Overlay {
     label(0.0F, "0");
     label(width - 0.3F * line(), "1");
     label(width + line(), "error / JND");
+    return beside.x + std::max(text_size(fonts().body, what).x, 15.0F * line());
   }
 
   void draw_buttons() const {
@@ -339,16 +334,28 @@ struct Overlay {
     ImGui::End();
   }
 
-  void draw_toasts(float y) const {
-    const float pad = 0.6F * line(), wrap = 0.86F * area.size.x;
-    ImDrawList& front = *ImGui::GetForegroundDrawList();
-    for (const Toast& toast : view.toasts) {
-      const ImVec2 size = text_size(fonts().body, toast.text, wrap);
-      const float x = area.at.x + 0.5F * (area.size.x - size.x);
-      draw_plate(front, {x, y}, size, {pad, pad}, ink(colours().raised),
-                 ink(toast.problem ? colours().fault : reference_colour(style.theme())));
-      front.AddText(fonts().body, line(), {x, y}, text_ink(false), toast.text.c_str(), nullptr, wrap);
-      y += size.y + 2.6F * pad;
+  // Draws what has to be said now on plates in the corner at the right of `left_px` and above `bottom_px`, which no
+  // block covers; where that is too narrow, below `top_px`.
+  void draw_notes(float left_px, float bottom_px, float top_px) const {
+    const bool exhibit = view.exhibit.on, corner = area.at.x + area.size.x - left_px > 15.0F * line();
+    std::vector<std::pair<std::string, ImU32>> notes;
+    for (const Toast& toast : view.toasts)
+      notes.emplace_back(toast.text, ink(toast.problem ? colours().fault : reference_colour(style.theme())));
+    const std::string warning = exhibit ? "" : data_warning(models());
+    if (!warning.empty()) notes.emplace_back(warning, ink(colours().fault));
+    if (const std::string hint = exhibit ? "" : press_hint(shown, view); !hint.empty() && notes.empty())
+      notes.emplace_back(hint, ink(colours().quiet));
+    const float pad = 0.5F * line();
+    const float wrap = corner ? area.at.x + area.size.x - left_px - 3.0F * pad : 0.86F * area.size.x;
+    float y = corner ? bottom_px : top_px;
+    for (const auto& [text, stripe] : notes) {
+      const ImVec2 size = text_size(fonts().body, text, wrap);
+      if (corner) y -= size.y + 2.0F * pad;
+      const float x =
+          corner ? area.at.x + area.size.x - size.x - 2.0F * pad : area.at.x + 0.5F * (area.size.x - size.x);
+      draw_plate(list(), {x, y + pad}, size, {pad, 0.5F * pad}, ink(colours().raised), stripe);
+      text_at(fonts().body, {x, y + pad}, text_ink(false), text, wrap);
+      if (!corner) y += size.y + 2.0F * pad;
     }
   }
 
@@ -356,25 +363,19 @@ struct Overlay {
     const bool exhibit = view.exhibit.on;  // has its own texts
     const float buttons = exhibit ? 0.0F : buttons_height(style);
     const float bars = buttons + replay_height(shown, style);
-    float top_px = area.at.y + 2.0F * line();
+    float top_px = area.at.y + 2.0F * line(), left_px = area.at.x;
     if (!exhibit) {
       draw_labels();
-      draw_big_number(bars);
+      left_px = draw_big_number(bars);
       draw_title();
       top_px = draw_headline();
-      const std::string warning = data_warning(models());
-      top_px = draw_plated(warning, top_px);
-      if (view.scales_force) {
-        top_px = draw_feel(top_px);
-      } else if (warning.empty()) {
-        top_px = draw_plated(press_hint(shown, view), top_px);
-      }
+      if (view.scales_force) top_px = draw_feel(top_px);
     }
     draw_recording();
     if (shown.replay) draw_replay_bar(buttons);
     if (!exhibit) draw_buttons();
     if (!view.dialogs.recording_roles.any()) draw_request();
-    draw_toasts(top_px + 0.5F * line());
+    draw_notes(left_px, area.at.y + area.size.y - bars, top_px);
   }
 };
 

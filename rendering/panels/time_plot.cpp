@@ -172,7 +172,7 @@ double TimePlot::time_under_mouse() const {
 }
 
 // The plot in which a drag began owns it, also where the mouse leaves it.
-void TimePlot::drag() {
+void TimePlot::drag(double oldest_s) {
   const ImGuiIO& io = ImGui::GetIO();
   if (hovered() && ImGui::IsMouseClicked(ImGuiMouseButton_Left)) {
     time_.dragging = !io.KeyShift;
@@ -181,7 +181,7 @@ void TimePlot::drag() {
   const ImVec2 began = io.MouseClickedPos[ImGuiMouseButton_Left];
   if (began.x < left() || began.x > right() || began.y < top() || began.y > bottom()) return;
   const bool down = ImGui::IsMouseDown(ImGuiMouseButton_Left);
-  if (time_.dragging && down) time_.drag_to(time_under_mouse(), end_s_);
+  if (time_.dragging && down) time_.drag_to(std::max(oldest_s, time_under_mouse()), end_s_);
   if (time_.dragging && !down) time_.end_drag();
   if (std::isnan(time_.zoom_from_s)) return;
   const float from_px = time_px(time_.zoom_from_s), to_px = time_px(time_under_mouse());
@@ -195,12 +195,13 @@ void TimePlot::drag() {
 }
 
 bool TimePlot::handle_mouse(const ForceHistory& history) {
-  drag();
+  const double oldest_s = history.size() > 0 ? history[0].loop_time_s : end_s_;
+  drag(oldest_s);
   if (hovered()) {
     time_.hover_s = time_under_mouse();
     if (const float wheel = ImGui::GetIO().MouseWheel; wheel != 0.0F) {
       time_.pause(end_s_);
-      time_.scroll_back(kWheelShare * time_.shown_s * wheel, history.size() > 0 ? history[0].loop_time_s : end_s_);
+      time_.scroll_back(kWheelShare * time_.shown_s * wheel, oldest_s);
     }
     if (ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left)) time_.run();
   }
@@ -216,7 +217,7 @@ bool TimePlot::handle_mouse(const ForceHistory& history) {
 }
 
 void TimePlot::draw_readings(const std::vector<Reading>& readings) const {
-  if (!hovered() || std::isnan(time_.hover_s)) return;
+  if (!hovered() || readings.empty()) return;
   const std::string heading = "at " + fixed(time_.hover_s - time_.zero_s, 3) + " s";
   const float line = ImGui::GetTextLineHeight();
   float width = ImGui::CalcTextSize(heading.c_str()).x;

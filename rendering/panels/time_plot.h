@@ -103,7 +103,7 @@ class TimePlot : public LivePlot {
   std::vector<std::vector<ColumnPixels>> runs(const ColumnRange& range) const;
   float time_px(double loop_time_s) const noexcept { return x_px(loop_time_s - time_.zero_s); }
   double time_under_mouse() const;
-  void drag();
+  void drag(double oldest_s);
 
   CurveTime& time_;
   double end_s_;

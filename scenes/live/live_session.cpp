@@ -414,11 +414,12 @@ void LiveSession::update_verdict() {
   verdict_ = judge(judged, of_model ? models_.info(*models_.reference()).name : "");
   note(start_.verdict_s, true);
   models_.propose(*verdict_.chosen);
-  verdict_.detail = of_model ? "There is no true force here: open a second recording to test on (O)."
-                    : live   ? "Of the presses so far, against " + reference_words(true) + "."
-                    : tests_training()
-                        ? "Of " + test_name() + ", to which the models were fitted."
-                        : "The test is " + test_name() + ", which no model was fitted to; it chose the model.";
+  verdict_.detail = (of_model ? "There is no true force here: open a second recording to test on (O)."
+                     : live   ? "The test is the presses so far, against " + reference_words(true) + "."
+                     : tests_training()
+                         ? "The test is " + test_name() + ", to which the models were fitted."
+                         : "The test is " + test_name() + ", which no model was fitted to; it chose the model.") +
+                    verdict_.detail;
 }
 
 Verdict LiveSession::verdict() const {

@@ -167,8 +167,8 @@ TEST_F(DefaultStart, TheHeadlineIsOfAModelOnTheStageAndOfTheTablesNumbers) {
   const std::size_t chosen = *shown.models.verdict.chosen;
   const ModelView& best = shown.models.slots[chosen];
   EXPECT_EQ(std::count(shown.blocks.begin(), shown.blocks.end(), chosen), 1);
-  EXPECT_EQ(shown.models.verdict.headline.rfind(best.name + " ", 0), 0u) << shown.models.verdict.headline;
-  EXPECT_NE(shown.models.verdict.headline.find(fixed(best.tick_ns(), 0) + " ns"), std::string::npos);
+  EXPECT_EQ(shown.models.verdict.headline.rfind("Use " + best.name + ": ", 0), 0u) << shown.models.verdict.headline;
+  EXPECT_NE(shown.models.verdict.headline.find(tick_text(best.tick_ns())), std::string::npos);
   EXPECT_EQ(shown.models.verdict.noticeable, best.errors.p99_error_over_jnd > 1.0);
   const nlohmann::json stats = nlohmann::json::parse(stats_text(app_->session(), shown, app_->view().frames));
   EXPECT_EQ(stats["verdict"], shown.models.verdict.headline);

@@ -107,6 +107,7 @@ class ExhibitTest : public test::DemoWindowTest {
   // Saves a picture of this screen if PALPATE_PICTURES names a folder.
   void picture(const std::string& name) {
     frames(2);
+    EXPECT_TRUE(app_->exhibit().fits()) << name;
     const char* folder = std::getenv("PALPATE_PICTURES");
     if (folder == nullptr) return;
     EXPECT_TRUE(app_->screenshot(std::string(folder) + "/" + pictures_ + name + ".png", true).ok());
@@ -132,6 +133,9 @@ class ExhibitTest : public test::DemoWindowTest {
       press_button("Enter");
     }
     ASSERT_EQ(state(), State::score);
+    EXPECT_TRUE(says("Your presses, each computer"));
+    press_button("Enter");
+    frames(2);
     EXPECT_TRUE(says("millionth"));
     EXPECT_TRUE(says("Fooled by it today"));
     for (std::size_t i = 0; i < 3; ++i) EXPECT_GT(game().largest_over_jnd(i), 0.0);
@@ -249,6 +253,8 @@ TEST_F(ExhibitTest, EveryScreenIsDrawnInBothLanguagesAtBothSizes) {
       if (learned) until([&] { return says("Ends in") || says("Endet in"); });
       picture("score");
       EXPECT_EQ(state(), State::score);
+      press(GLFW_KEY_ENTER);
+      picture("farewell");
       press(GLFW_KEY_L);
     }
     app_.reset();
