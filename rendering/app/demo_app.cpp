@@ -215,7 +215,8 @@ void DemoApp::reopen(const SessionRequest& request) {
   SessionRequest without_device = request_;
   without_device.device = "mouse";
   const SessionRequest plain{.device = "mouse", .realtime = request_.realtime, .data_folder = request_.data_folder};
-  for (const SessionRequest& wanted : {request, request_, without_device, plain}) {
+  for (SessionRequest wanted : {request, request_, without_device, plain}) {
+    wanted.known_device = wanted.device == request_.device;
     auto session = LiveSession::open(wanted);
     if (session) {
       request_ = wanted;
@@ -248,7 +249,6 @@ WindowActions DemoApp::make_actions() {
   };
   actions.remove = [this](std::size_t slot) { session_->remove(slot); };
   actions.treat_as_this_material = [this](std::size_t slot) { session_->treat_as_this_material(slot); };
-  actions.rename = [this](std::size_t slot, const std::string& name) { session_->models().rename(slot, name); };
   actions.refit = [this](std::size_t slot, int centres) { session_->models().refit(slot, centres); };
   actions.add_model = [this](const std::string& name) { session_->add_model(name); };
   actions.worst = [this](std::size_t slot) { use_worst(slot); };

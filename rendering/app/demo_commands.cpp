@@ -79,17 +79,12 @@ std::vector<WindowChoice> DemoApp::choices() {
     for (const LineUp& one : line_ups()) models.push_back(one.name);
   if (const LineUp* one = find_line_up(session_->line_up())) line_up = static_cast<std::size_t>(one - &line_ups()[0]);
   const auto names = [](auto... all) { return std::vector<std::string>{all...}; };
-  const auto first_is = [](bool& value) { return [&value](std::size_t i) { value = i == 0; }; };
   return {{GLFW_KEY_B, "Blocks", "one block, two models beside the truth, or one of each model and of the truth",
            names("1", "2", "all"), std::min<std::size_t>(settings.blocks - 1, 2),
            [this](std::size_t i) { use_block_count(i < 2 ? i + 1 : kAllBlocks); }},
           {GLFW_KEY_N, "New models", "the next set of models: comparison, sizes, corrections, direct", models, line_up,
            [this](std::size_t i) { use_line_up(line_ups()[i]); },
            "there is nothing to fit models to: S chooses a material, a recording is one too"},
-          {GLFW_KEY_Y, "Y axis", "the difference in its band, or its mean over 50 ms",
-           names("difference", "mean over 50 ms"), settings.difference ? 0U : 1U, first_is(settings.difference)},
-          {GLFW_KEY_P, "Plot", "the error against the time that a model takes, or against the force",
-           names("error against time", "error against force"), view_.verdict ? 0U : 1U, first_is(view_.verdict)},
           {GLFW_KEY_T, "Theme", "light or dark", names("light", "dark"), static_cast<std::size_t>(settings.theme),
            [&settings](std::size_t i) { settings.theme = static_cast<Theme>(i); }},
           {GLFW_KEY_A, "Allow force", "the device pushes only while G is held, only while its grip is held, or always",
@@ -156,7 +151,7 @@ std::vector<WindowCommand> DemoApp::make_commands() {
                          }),
                  [this] { return view_.scales_force; }),
       hint("Tab", "moves a focus through the buttons; Enter or Space presses it"),
-      hint("a row", "Shift and click: two models beside the truth; right button: renames it; x: takes it out"),
+      hint("a row", "Shift and click: two models beside the truth; x: takes it out"),
       hint("on the curves", "drag: the moment that is shown; Shift and drag: zoom; wheel: scroll; double click: go on"),
       when(When::held,
            keys({GLFW_KEY_LEFT, GLFW_KEY_RIGHT}, "scroll back and forth while the curves stand still", scroll)),
@@ -170,7 +165,7 @@ std::vector<WindowCommand> DemoApp::make_commands() {
                      [seek](std::size_t key) { seek(key == 0 ? -kSeekStep_s : kSeekStep_s); })),
       in_replay(keys({GLFW_KEY_LEFT_BRACKET, GLFW_KEY_RIGHT_BRACKET}, "play a recording slower or faster",
                      [play_at](std::size_t key) { play_at(key == 0 ? 1.0 / kSpeedStep : kSpeedStep); })),
-      toggle(GLFW_KEY_L, "Loop", "all figures of the loop, and its faults", view_.details),
+      toggle(GLFW_KEY_L, "Loop", "the faults of the loop", view_.details),
       command(GLFW_KEY_Z, "", "the device's tool is at its rest position: zero it there",
               [this] { session_->start_zeroing(); }),
       when(When::held, command(GLFW_KEY_G, "", "hold it to let the device push, if A requires it",

@@ -19,7 +19,6 @@ namespace palpate {
 
 // The settings as JSON: a missing field is the default.
 NLOHMANN_JSON_SERIALIZE_ENUM(Theme, {{Theme::light, "light"}, {Theme::dark, "dark"}})
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(CameraTurn, yaw_rad, pitch_rad, distance)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(Settings, theme, text_size, recent)
 
 namespace {

@@ -187,8 +187,8 @@ void DemoApp::begin_stroke(const ImVec2& mouse) {
       area.at.y + blocks_->on_screen(*block, count, {0.0F, 0.0F, 0.0F}, glm::vec2(area.size.x, area.size.y)).y;
 }
 
-// Moves the tool with the pointer, in every frame. The depth that the hand aims at is the way down from the beginning of
-// the stroke; the full trained depth is within reach.
+// Moves the tool with the pointer, in every frame. The depth that the hand aims at is the way down from the beginning
+// of the stroke; the full trained depth is within reach.
 void DemoApp::follow_stroke() {
   ToolInput* tool = session_->tool_input();
   if (!stroke_ || tool == nullptr) return;

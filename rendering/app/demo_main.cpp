@@ -134,7 +134,7 @@ Status run_study(const Arguments& arguments) {
 Status run_demo(Arguments& arguments) {
   if (Status status = check_outputs(arguments); !status) return status;
   std::string& device = arguments.demo.session.device;
-  arguments.demo.session.remote_bridges = arguments.bridge_remote;
+  if (arguments.bridge_remote) allow_remote_bridges();
   if (arguments.demo.exhibit) arguments.demo.window.fullscreen = true;
   if (!arguments.screenshot.empty() && arguments.seconds == 0.0) arguments.seconds = kPictureAfter_s;
   if (arguments.discriminate || arguments.demo.session.scene == kStudyScene) return run_study(arguments);

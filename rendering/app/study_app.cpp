@@ -170,7 +170,7 @@ void StudyApp::draw_intervals(const StudyView& view) {
     const Rgb colour = view.interval == interval ? reference_colour(style_.theme()) : style_.colours().raised;
     ImGui::PushStyleColor(ImGuiCol_Button, paint(colour));
     const char label[2] = {"R12"[interval], '\0'};
-    const bool early = steady_now_s() < answers_from_s_;
+    const bool early = last_ != view.state || steady_now_s() < answers_from_s_;
     if (button(label, GLFW_KEY_0 + interval, {side, side}) && interval > 0 && !early) session()->answer(interval == 2);
     ImGui::PopStyleColor();
     ImGui::SameLine(0.0F, 0.3F * side);

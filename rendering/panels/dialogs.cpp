@@ -136,8 +136,6 @@ void draw_view_list(ViewState& view, const WindowActions& actions) {
     }
     ImGui::PopID();
   }
-  ImGui::Checkbox("Arrows show ten times the difference (X)", &view.exaggerated);
-  ImGui::Checkbox("All figures of the loop, and its faults (L)", &view.details);
   ImGui::SetNextItemWidth(10.0F * ImGui::GetFontSize());
   ImGui::SliderFloat("text size (+, -)", &view.settings.text_size, kSmallestText, kLargestText, "%.1f");
   ImGui::End();

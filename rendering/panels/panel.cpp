@@ -34,59 +34,6 @@ void draw_centres(const ModelsView& models, ViewState& view, const WindowActions
   ImGui::TextDisabled("%s", refitting ? "fits ..." : "");
 }
 
-// Bins with fewer samples have no useful standard deviation.
-constexpr std::uint64_t kFewestSamples = 20;
-
-PlotAxes axes_of_bins(const ModelsView& models) {
-  double force_N = 1.0, error_N = 0.1;
-  for (const ModelView& slot : models.slots) {
-    for (const ForceBin& bin : slot.errors.bins) {
-      if (bin.force_N.count() < kFewestSamples) continue;
-      force_N = std::max(force_N, bin.force_to_N);
-      error_N = std::max(error_N, bin.error_N.mean() + bin.error_N.deviation());
-    }
-  }
-  // The JND line is visible completely; larger maxima are cut at the top.
-  return {{0.0, force_N}, {0.0, round_up(1.6 * std::max(error_N, models.jnd.at(force_N)))}, "N", "N"};
-}
-
-void draw_slot(const LivePlot& plot, const ModelsView& models, std::size_t index, const UiStyle& style) {
-  const bool selected = index == models.selected;
-  const ModelView& slot = models.slots[index];
-  const ImU32 colour = ink(slot_colour(models, index, style.theme()));
-  const float size = style.scale();
-  std::vector<ImVec2> spread;
-  for (const ForceBin& bin : slot.errors.bins) {
-    if (bin.force_N.count() < kFewestSamples) continue;
-    const float x = plot.x_px(0.5 * (bin.force_from_N + bin.force_to_N));
-    spread.emplace_back(x, plot.y_px(bin.error_N.mean() + bin.error_N.deviation()));
-    plot.list().AddCircleFilled(spread.back(), (selected ? 4.0F : 3.0F) * size, colour);
-    const float top = std::max(plot.y_px(bin.error_N.largest()), plot.top() + 4.0F * size);
-    plot.list().AddTriangleFilled({x - 4.0F * size, top + 3.0F * size}, {x + 4.0F * size, top + 3.0F * size},
-                                  {x, top - 4.0F * size}, colour);
-  }
-  plot.line(spread, colour, (selected ? 2.6F : 1.5F) * size);
-}
-
-// Draws mean + standard deviation and maximum of the error in each bin of the force, and the JND.
-void draw_error_bins(const ModelsView& models, const UiStyle& style, float height) {
-  const PlotAxes axes = axes_of_bins(models);
-  {
-    const LivePlot plot(style, {ImGui::GetContentRegionAvail().x, height}, axes);
-    std::vector<ImVec2> line, floor;
-    for (const double force_N : {0.0, axes.x.to}) {
-      line.emplace_back(plot.x_px(force_N), plot.y_px(models.jnd.at(force_N)));
-      floor.emplace_back(plot.x_px(force_N), plot.bottom());
-    }
-    plot.band(line, floor, ink(style.colours().band));
-    plot.line(line, ink(style.colours().text), 1.5F * style.scale());
-    for (const std::size_t slot : models.drawn()) draw_slot(plot, models, slot, style);
-    plot.caption("JND", std::max(plot.top(), plot.y_px(models.jnd.offset_N) - 0.25F * (plot.bottom() - plot.top())));
-  }
-  tip("Error against force, in steps of two JND.\nDots: mean + standard deviation. "
-      "Triangles: the largest.\nBlack line: the just noticeable difference.");
-}
-
 constexpr std::size_t kFaultsShown = 6;
 constexpr double kFewFrames_per_s = 50.0;
 constexpr std::uint64_t kStart_ticks = 10'000;
@@ -97,28 +44,6 @@ std::string text_of(const char* pattern, double a, double b = 0.0) {
   char text[160];
   std::snprintf(text, sizeof text, pattern, a, b);
   return text;
-}
-
-void row(const char* name, const TimePercentiles& times) {
-  ImGui::TableNextRow();
-  ImGui::TableNextColumn();
-  ImGui::TextUnformatted(name);
-  for (const double value : {times.p50_us, times.p99_us, times.p99_9_us, times.max_us}) {
-    ImGui::TableNextColumn();
-    ImGui::Text("%.0f", value);
-  }
-}
-
-void draw_times(const LoopStatistics& statistics, const FrameFigures& frames) {
-  ImGui::Text("%llu ticks, the last %.1f ms ago", static_cast<unsigned long long>(statistics.ticks),
-              1e3 * statistics.age_s);
-  if (!ImGui::BeginTable("times", 5, ImGuiTableFlags_SizingStretchProp | ImGuiTableFlags_NoSavedSettings)) return;
-  for (const char* heading : {"microseconds", "p50", "p99", "p99.9", "max"}) ImGui::TableSetupColumn(heading);
-  ImGui::TableHeadersRow();
-  row("lateness", statistics.lateness);
-  row("tick", statistics.tick);
-  row("frame", frames.times.percentiles());
-  ImGui::EndTable();
 }
 
 void draw_faults(const HealthView& health, const UiStyle& style) {
@@ -151,7 +76,7 @@ void draw_health(const HealthView& health, ViewState& view, const UiStyle& style
   const Palette& p = style.colours();
   wrapped(words.problem ? p.fault : p.quiet, words.text + (words.past ? ". C clears this." : ""));
   if (ImGui::IsItemClicked()) view.details = !view.details;
-  tip("How well the 1000 Hz loop keeps its time. L shows all figures and faults.");
+  tip("How well the 1000 Hz loop keeps its time. L shows the faults.");
   const RtStatus& scheduling = health.scheduling;
   ImGui::TextDisabled("scheduling: %s", scheduling.scheduling.c_str());
   if (!scheduling.fix.empty()) {
@@ -166,7 +91,6 @@ void draw_health(const HealthView& health, ViewState& view, const UiStyle& style
   }
   if (!view.details) return;
   if (!scheduling.fix.empty()) ImGui::TextWrapped("%s", scheduling.fix.c_str());
-  draw_times(health.loop, view.frames);
   draw_faults(health, style);
 }
 
@@ -240,14 +164,10 @@ void draw_panel(ForceCurves& curves, const WindowView& shown, ViewState& view, c
   draw_model_table(shown, view, style, table, actions);
   if (centres > 0.0F) draw_centres(models, view, actions);
   if (bins) {
-    section_title(style, view.verdict ? "ERROR / JND AGAINST TIME OF A TICK" : "ERROR AGAINST FORCE");
+    section_title(style, "ERROR / JND AGAINST TIME OF A TICK");
     ImGui::SameLine();
     quiet_words(models.counted);
-    if (view.verdict) {
-      draw_speed(models, style, rest * 0.36F);
-    } else {
-      draw_error_bins(models, style, rest * 0.36F);
-    }
+    draw_speed(models, style, rest * 0.36F);
   }
   const float above_px = ImGui::GetCursorPosY();
   draw_health(shown.health, view, style);

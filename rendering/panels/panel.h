@@ -58,7 +58,7 @@ void section_title(const UiStyle& style, const char* title);
 void tip(const char* text);
 
 // The curves: force against time with the JND band, force against depth, and the difference of every model from the
-// reference in JND, per tick or as its mean over 50 ms.
+// reference in JND.
 class ForceCurves {
  public:
   void draw(const WindowView& shown, ViewState& view, const UiStyle& style, float force_height, float error_height);
@@ -68,12 +68,11 @@ class ForceCurves {
  private:
   CurveColumns columns_;
   double force_scale_N_ = 1.0;  // upper end of the force axes; changes gradually
-  double error_scale_ = 2.0;    // upper end of the error axis; changes gradually
 };
 
 // The table of models. A click on a row makes its model the active one, with Shift it compares it with the active one
-// alone; a click on its error shows the moment of its largest one. A right click opens a menu to rename it and to
-// compare a model of another material. The last row adds a model.
+// alone; a click on its error shows the moment of its largest one. A right click on a
+// model of another material offers to compare it. The last row adds a model.
 void draw_model_table(const WindowView& shown, ViewState& view, const UiStyle& style, float height,
                       const WindowActions& actions);
 // Which other models have the forces of this one, and why; empty: none. Begins with a line break.

@@ -40,7 +40,6 @@ double farther(const Range& range) { return -range.from > range.to ? range.from 
 using SlotRange = Range (*)(const CurveColumn& column, std::size_t slot);
 
 Range force_of(const CurveColumn& column, std::size_t slot) { return single(column.tick.force_N[slot]); }
-Range sustained_of(const CurveColumn& column, std::size_t slot) { return single(column.sustained_over_jnd[slot]); }
 Range difference_of(const CurveColumn& column, std::size_t slot) {
   return {column.low_over_jnd[slot], column.high_over_jnd[slot]};
 }
@@ -100,22 +99,16 @@ struct Drawing {
   }
 
   void draw_titles_of_error() const {
-    const bool difference = view.settings.difference;
-    section_title(style, predicts()   ? "PREDICTED ERROR / JND"
-                         : difference ? "DIFFERENCE / JND"
-                                      : "ERROR / JND, MEAN OVER 50 MS");
+    section_title(style, predicts() ? "PREDICTED ERROR / JND" : "DIFFERENCE / JND");
     ImGui::SameLine();
     if (models().out_of_domain()) {
       ImGui::TextColored(paint(style.colours().fault), "away from the recorded data");
     } else if (models().stands) {
       quiet_words(view.worst ? view.worst->words : "stands still; Space continues");
     } else {
-      quiet_words(difference ? "outside the band most people notice it" : "above 1 most people notice it");
+      quiet_words("outside the band most people notice it");
     }
-    tip(difference ? "Model minus reference, in just noticeable differences: inside the band few people notice it.\n"
-                     "V: its mean over 50 ms, as one line."
-                   : "Mean difference over 50 ms, in just noticeable differences. Faint marks: the largest of a single "
-                     "tick.\nV: the difference in its band.");
+    tip("Model minus reference, in just noticeable differences: inside the band few people notice it.");
   }
 
   void draw_curves(const TimePlot& plot, SlotRange range) const {
@@ -126,23 +119,18 @@ struct Drawing {
     }
   }
 
-  // Draws the values under the mouse, and the name of the model whose row is under the mouse.
+  // Draws the values under the mouse.
   void draw_readings(TimePlot& plot, SlotRange range, const char* unit) {
     if (plot.handle_mouse(*shown.history)) hovered = true;
 
     const CurveColumn* under = columns.at(view.time.hover_s);
-    const CurveColumn* last = columns.last();
     std::vector<Reading> readings;
     const auto read = [&](const std::string& name, const Rgb& in, double value, const char* of) {
       if (!std::isnan(value)) readings.push_back({name + "  " + at_most_three_decimals(value) + of, in});
     };
     if (under != nullptr) read("reference", reference(), under->tick.reference_N, " N");
     for (const std::size_t slot : models().listed()) {
-      const std::string& name = models().slots[slot].name;
-      const double end = last != nullptr ? farther(range(*last, slot)) : std::nan("");
-      if (slot == view.pointed && !std::isnan(end))
-        plot.draw_name(name, text_colour(colour(slot), style.theme()), plot.y_px(end));
-      if (under != nullptr) read(name, colour(slot), farther(range(*under, slot)), unit);
+      if (under != nullptr) read(models().slots[slot].name, colour(slot), farther(range(*under, slot)), unit);
     }
     plot.draw_readings(readings);
   }
@@ -219,26 +207,6 @@ struct Drawing {
     draw_curves(plot, difference_of);
     draw_readings(plot, difference_of, " JND");
   }
-
-  void draw_sustained(const ImVec2& size, double most) {
-    TimePlot plot = begin_plot(size, {0.0, most}, "");
-    plot.jnd_band(0.0, 1.0);
-    plot.level(1.0, ink(style.colours().text), 1.5F * scale());
-    fill_prediction(plot, [&](const CurveColumn& column) { return Range{0.0, predicted_over_jnd(column)}; });
-    // Faint marks for the largest difference of a single tick, where a hand could feel it.
-    for (const std::size_t slot : models().drawn()) {
-      for (const CurveColumn& column : columns.columns()) {
-        const double largest = std::abs(farther(difference_of(column, slot)));
-        if (!(largest > 1.0)) continue;
-        const ImVec2 at(plot.x_px(column.time_s - view.time.zero_s),
-                        std::max(plot.y_px(largest), plot.top() + scale()));
-        plot.list().AddRectFilled({at.x - scale(), at.y - scale()}, {at.x + scale(), at.y + scale()},
-                                  ink(colour(slot), 0.35F));
-      }
-    }
-    draw_curves(plot, sustained_of);
-    draw_readings(plot, sustained_of, " JND");
-  }
 };
 
 }  // namespace
@@ -252,15 +220,12 @@ void ForceCurves::draw(const WindowView& shown, ViewState& view, const UiStyle& 
                   drawing.end_s, count);
   const double highest_N = 1.05 * columns_.highest_force_N();
   force_scale_N_ = eased_scale(force_scale_N_, std::max({1.0, shown.usual_force_N, highest_N}));
-  // A larger range than 8 JND would hide differences near 1 JND.
-  error_scale_ = eased_scale(error_scale_, std::clamp(1.2 * columns_.highest_sustained_over_jnd(), 1.5, 8.0));
   drawing.draw_titles_of_force(kTimeShare * all);
   drawing.draw_force({kTimeShare * all - ImGui::GetStyle().ItemSpacing.x, force_height}, force_scale_N_);
   ImGui::SameLine();
   drawing.draw_loops({(1.0F - kTimeShare) * all, force_height}, force_scale_N_);
   drawing.draw_titles_of_error();
-  const ImVec2 size(all, error_height);
-  view.settings.difference ? drawing.draw_difference(size) : drawing.draw_sustained(size, error_scale_);
+  drawing.draw_difference({all, error_height});
   if (!drawing.hovered) view.time.hover_s = std::nan("");
 }
 

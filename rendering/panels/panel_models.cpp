@@ -131,20 +131,8 @@ struct Rows {
   const ModelsView& models() const { return shown.models; }
 
   void draw_menu(Slot slot) const {
-    if (!ImGui::BeginPopupContextItem()) return;
-    TableState& table = view.table;
-    if (ImGui::IsWindowAppearing()) {
-      table.name.fill('\0');
-      models().slots[slot].name.copy(table.name.data(), table.name.size() - 1);
-    }
-    ImGui::TextUnformatted("Name, then Enter:");
-    if (ImGui::InputText("##name", table.name.data(), table.name.size(), ImGuiInputTextFlags_EnterReturnsTrue)) {
-      actions.rename(slot, table.name.data());
-      ImGui::CloseCurrentPopup();
-    }
-    if (models().slots[slot].other_material && ImGui::Selectable("It is a model of this material: compare it"))
-      actions.treat_as_this_material(slot);
-    if (ImGui::Selectable("Take it out of the comparison")) actions.remove(slot);
+    if (!models().slots[slot].other_material || !ImGui::BeginPopupContextItem()) return;
+    if (ImGui::Selectable("It is a model of this material: compare it")) actions.treat_as_this_material(slot);
     ImGui::EndPopup();
   }
 

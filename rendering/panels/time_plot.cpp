@@ -75,18 +75,14 @@ void CurveColumns::add(const HistoryPoint& point, const JndLine& jnd, CurveColum
     // These ignore NaN.
     column.low_over_jnd[i] = std::fmin(column.low_over_jnd[i], difference);
     column.high_over_jnd[i] = std::fmax(column.high_over_jnd[i], difference);
-    column.sustained_over_jnd[i] = std::fmax(column.sustained_over_jnd[i], std::abs(point.sustained_over_jnd[i]));
   }
 }
 
 void CurveColumns::find_highest() {
-  highest_force_N_ = highest_sustained_ = 0.0F;
+  highest_force_N_ = 0.0F;
   for (const CurveColumn& column : columns_) {
     highest_force_N_ = std::fmax(highest_force_N_, column.tick.reference_N + column.jnd_N);
-    for (std::size_t i = 0; i < slots_; ++i) {
-      highest_force_N_ = std::fmax(highest_force_N_, column.tick.force_N[i]);
-      highest_sustained_ = std::fmax(highest_sustained_, column.sustained_over_jnd[i]);
-    }
+    for (std::size_t i = 0; i < slots_; ++i) highest_force_N_ = std::fmax(highest_force_N_, column.tick.force_N[i]);
   }
 }
 
@@ -96,12 +92,6 @@ const CurveColumn* CurveColumns::at(double time_s) const noexcept {
   if (!(place >= 0.0) || place >= static_cast<double>(columns_.size())) return nullptr;
   const CurveColumn& column = columns_[static_cast<std::size_t>(place)];
   return column.any ? &column : nullptr;
-}
-
-const CurveColumn* CurveColumns::last() const noexcept {
-  const auto found =
-      std::find_if(columns_.rbegin(), columns_.rend(), [](const CurveColumn& column) { return column.any; });
-  return found != columns_.rend() ? &*found : nullptr;
 }
 
 TimePlot::TimePlot(const UiStyle& style, const ImVec2& size, const Range& y, const char* y_unit, CurveTime& time,
@@ -239,14 +229,6 @@ void TimePlot::draw_readings(const std::vector<Reading>& readings) const {
                         ink(reading.colour), 2.0F);
     front.AddText({low.x + pad + line, y}, ink(style_.colours().text), reading.text.c_str());
   }
-}
-
-void TimePlot::draw_name(const std::string& name, const Rgb& colour, float y_px) const {
-  const float line = ImGui::GetTextLineHeight();
-  const float width = ImGui::CalcTextSize(name.c_str()).x;
-  // The name is above the end of the curve, or below it if there is no room.
-  const float y = y_px - 1.2F * line > top() ? y_px - 1.2F * line : y_px + 0.2F * line;
-  list().AddText({right() - width - 0.3F * line, y}, ink(colour), name.c_str());
 }
 
 }  // namespace palpate

@@ -28,8 +28,6 @@ struct CurveColumn {
   // By slot: extremes of (model - reference) / JND, signed; 0 out of contact, NaN without a force or a comparison.
   std::array<float, kMaxModels> low_over_jnd = no_values();
   std::array<float, kMaxModels> high_over_jnd = no_values();
-  std::array<float, kMaxModels> sustained_over_jnd =
-      no_values();  // largest magnitude of HistoryPoint::sustained_over_jnd
 };
 
 // The error (95 %) that the active model predicts of its force, 0 out of contact; NaN: there is none, or there is a
@@ -47,11 +45,8 @@ class CurveColumns {
   const std::vector<CurveColumn>& columns() const noexcept { return columns_; }
   // The column at a time; null: there is none, or it has no ticks.
   const CurveColumn* at(double time_s) const noexcept;
-  // The newest column with ticks; null: there is none.
-  const CurveColumn* last() const noexcept;
   // The largest over all columns and slots; 0 without ticks.
   float highest_force_N() const noexcept { return highest_force_N_; }
-  float highest_sustained_over_jnd() const noexcept { return highest_sustained_; }
 
  private:
   bool scroll(double width_s, double first, std::size_t slots, std::size_t count);
@@ -63,7 +58,7 @@ class CurveColumns {
   double width_s_ = 0.0;
   double first_ = 0.0;    // left border of the first column, in widths
   double taken_s_ = 0.0;  // loop time of the last tick that was gathered
-  float highest_force_N_ = 0.0F, highest_sustained_ = 0.0F;
+  float highest_force_N_ = 0.0F;
 };
 
 // The range of a quantity in a column; NaN: there is none.
@@ -93,8 +88,6 @@ class TimePlot : public LivePlot {
   bool handle_mouse(const ForceHistory& history);
   // Draws a box with readings beside the time under the mouse, if the mouse is over the plot.
   void draw_readings(const std::vector<Reading>& readings) const;
-  // Draws the name of a curve inside the frame at its end, which is at `y_px`.
-  void draw_name(const std::string& name, const Rgb& colour, float y_px) const;
 
  private:
   struct ColumnPixels {

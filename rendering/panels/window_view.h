@@ -129,7 +129,6 @@ struct CurveTime {
 struct TableState {
   int column = -1;  // the column that it is sorted by; -1: by slot
   bool rising = false;
-  std::array<char, 64> name{};  // the name that is being typed
 };
 
 // Recordings that the user opened; models are fitted to all but the test. The user has to confirm it.
@@ -166,7 +165,6 @@ struct Settings {
   float text_size = 1.0F;           // factor
   std::vector<std::string> recent;  // files that were opened, the newest first
   std::size_t blocks = kAllBlocks;  // 1, 2 or all
-  bool difference = true;           // the lower curves show the difference of every tick; else its mean over 50 ms
   bool operator==(const Settings&) const = default;
 };
 
@@ -229,15 +227,14 @@ struct ViewState {
   bool opens_menu = false;                // the next frame opens the menu
   bool exaggerated = false;               // arrows show ten times the difference
   int requested_centres = 0;              // last value of the slider of centres
-  bool details = false;                   // shows the figures and faults of the loop
+  bool details = false;                   // shows the faults of the loop
   float health_px = 0.0F;                 // height of the lines about the loop in the last frame
   bool has_pressed = false;               // the user has pressed a block, so that the hint is hidden
-  std::size_t pointed = kReferenceBlock;  // slot of the row under the mouse; its curves are labelled
+  std::size_t pointed = kReferenceBlock;  // slot of the row under the mouse
   std::size_t crossed = kReferenceBlock;  // the same of the frame before, for the row's button
   std::size_t second = kReferenceBlock;   // slot of the other of two models that are compared; or none
   bool material = false;                  // the block of the reference is the chosen one
   std::optional<WorstMoment> worst;       // it is shown instead of the present
-  bool verdict = true;                    // plots error against time of a tick; else error against force
 };
 
 // A slot: its model and its errors.
@@ -318,7 +315,6 @@ struct WindowActions {
   using OfSlot = std::function<void(std::size_t)>;
   using OfText = std::function<void(const std::string&)>;
   OfSlot select, remove, treat_as_this_material, worst;
-  std::function<void(std::size_t, const std::string&)> rename;
   std::function<void(std::size_t, int)> refit;  // with this number of centres
   OfText add_model;                             // the name of a method with a size
   std::function<void(const ForceScale&)> scale;

@@ -185,8 +185,4 @@ void LivePlot::level(double y, ImU32 colour, float thickness) const {
   list_->AddLine({low_.x, y_px(y)}, {high_.x, y_px(y)}, colour, thickness);
 }
 
-void LivePlot::caption(const char* text, float top_px) const {
-  list_->AddText({low_.x + 0.2F * ImGui::GetFontSize(), top_px}, ink(style_.colours().quiet), text);
-}
-
 }  // namespace palpate

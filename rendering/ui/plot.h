@@ -64,8 +64,6 @@ class LivePlot {
   // Fills a range of y over the whole width: the differences below one JND.
   void jnd_band(double from, double to) const;
   void level(double y, ImU32 colour, float thickness) const;
-  // Secondary text at the left edge of the frame.
-  void caption(const char* text, float top_px) const;
 
  protected:
   const UiStyle& style_;

@@ -5,7 +5,6 @@
 #include <filesystem>
 #include <string_view>
 
-#include "devices/bridge/bridge_bus.h"
 #include "devices/virtual/simulated_devices.h"
 #include "engine/base/text.h"
 #include "engine/live/pacer.h"
@@ -113,7 +112,6 @@ ModelTest::MakeRecording LiveSession::make_test(std::optional<Recording> part) c
 
 Result<std::unique_ptr<LiveSession>> LiveSession::open(const SessionRequest& request) {
   const double began_s = steady_now_s();
-  if (request.remote_bridges) allow_remote_bridges();
   Result<Scene> scene = load_scene(request.scene.empty() ? "silicone_block" : request.scene);
   if (!scene) return scene.error();
   DeviceRequest device_request{.calibrations = calibrations_folder(), .bus = request.bus};
@@ -170,7 +168,8 @@ Status LiveSession::begin(const std::vector<ModelRequest>& plans) {
   settings.realtime = request_.realtime;
   loop_ = std::make_unique<HapticsLoop>(*device_, settings);
   recorder_ = std::make_unique<SessionRecorder>(*loop_);
-  if (std::string note = device_->note(); !note.empty()) notices_.push_back({std::move(note), false});
+  if (std::string note = device_->note(); !note.empty() && !request_.known_device)
+    notices_.push_back({std::move(note), false});
   if (set_apart_)
     notices_.push_back(
         {"The end of " + test_file() + " is set apart: models are fitted to the rest and tested on it.", false});
@@ -321,58 +320,54 @@ std::optional<LiveSession::Worst> LiveSession::worst_of_test(std::size_t slot, c
                                                              double zero_s) const {
   constexpr double kBefore_s = 6.0, kAfter_s = 2.0;
   const std::vector<std::size_t> slots = models_.ready_slots();
-  const auto place = static_cast<std::size_t>(std::ranges::find(slots, slot) - slots.begin());
   const double begin_s = recording.rows.front().time_s;
-  SustainedError sustained;
-  double largest = 0.0;
+  // Calls `use` with every tick and its row.
+  const auto each_tick = [&](const auto& use) {
+    std::vector<SustainedError> errors(slots.size());
+    std::array<float, kMaxModels> press{};
+    double contact_s = -std::numeric_limits<double>::infinity();
+    std::size_t index = 0;
+    (void)palpate::replay(
+        recording, models_.ready_models(),
+        [&](const RecordingRow& row, const TickSnapshot& tick, const auto&) {
+          HistoryPoint point;
+          point.loop_time_s = zero_s + row.time_s - begin_s;
+          point.time_s = row.time_s;
+          point.position_m = static_cast<float>(tick.position_m);
+          point.depth_m = static_cast<float>(tick.depth_m);
+          point.reference_N = static_cast<float>(row.force_N);
+          point.in_contact = tick.in_contact;
+          point.active = static_cast<std::uint8_t>(slot);
+          if (tick.in_contact && row.time_s - contact_s > 0.2) press = {};
+          if (tick.in_contact) contact_s = row.time_s;
+          for (std::size_t i = 0; i < slots.size(); ++i) {
+            const std::size_t its = slots[i];
+            point.force_N[its] = static_cast<float>(tick.force_N[i]);
+            const double difference = point.difference_over_jnd(its, scene_.jnd);
+            point.sustained_over_jnd[its] = static_cast<float>(errors[i].add(row.time_s, difference));
+            if (tick.in_contact) press[its] = std::max(press[its], std::abs(point.sustained_over_jnd[its]));
+            point.press_over_jnd[its] = press[its];
+          }
+          use(point, index++);
+        },
+        test_.offset_m());
+  };
+  float largest = 0.0F;
   std::size_t at = recording.rows.size();
-  std::size_t row_index = 0;
-  (void)palpate::replay(
-      recording, models_.ready_models(),
-      [&](const RecordingRow& row, const TickSnapshot& tick, const auto&) {
-        const double difference =
-            tick.in_contact ? (tick.force_N[place] - row.force_N) / scene_.jnd.at(row.force_N) : 0.0;
-        const double error = std::abs(sustained.add(row.time_s, difference));
-        if (tick.in_contact && error > largest) {
-          largest = error;
-          at = row_index;
-        }
-        ++row_index;
-      },
-      test_.offset_m());
+  each_tick([&](const HistoryPoint& point, std::size_t index) {
+    const float error = std::abs(point.sustained_over_jnd[slot]);
+    if (!point.in_contact || !(error > largest)) return;
+    largest = error;
+    at = index;
+  });
   if (at == recording.rows.size()) return std::nullopt;
   const double worst_s = recording.rows[at].time_s;
-  const auto near = static_cast<std::size_t>(std::ranges::count_if(recording.rows, [&](const RecordingRow& row) {
-    return row.time_s >= worst_s - kBefore_s && row.time_s <= worst_s + kAfter_s;
-  }));
-  auto history = std::make_shared<ForceHistory>(near);
-  std::vector<SustainedError> errors(slots.size());
-  std::array<float, kMaxModels> press{};
-  double contact_s = -std::numeric_limits<double>::infinity();
-  (void)palpate::replay(
-      recording, models_.ready_models(),
-      [&](const RecordingRow& row, const TickSnapshot& tick, const auto&) {
-        HistoryPoint point;
-        point.loop_time_s = zero_s + row.time_s - begin_s;
-        point.time_s = row.time_s;
-        point.position_m = static_cast<float>(tick.position_m);
-        point.depth_m = static_cast<float>(tick.depth_m);
-        point.reference_N = static_cast<float>(row.force_N);
-        point.in_contact = tick.in_contact;
-        point.active = static_cast<std::uint8_t>(slot);
-        if (tick.in_contact && row.time_s - contact_s > 0.2) press = {};
-        if (tick.in_contact) contact_s = row.time_s;
-        for (std::size_t i = 0; i < slots.size(); ++i) {
-          const std::size_t its = slots[i];
-          point.force_N[its] = static_cast<float>(tick.force_N[i]);
-          const double difference = point.difference_over_jnd(its, scene_.jnd);
-          point.sustained_over_jnd[its] = static_cast<float>(errors[i].add(row.time_s, difference));
-          if (tick.in_contact) press[its] = std::max(press[its], std::abs(point.sustained_over_jnd[its]));
-          point.press_over_jnd[its] = press[its];
-        }
-        if (row.time_s >= worst_s - kBefore_s && row.time_s <= worst_s + kAfter_s) history->append(point);
-      },
-      test_.offset_m());
+  const auto is_near = [&](double time_s) { return time_s >= worst_s - kBefore_s && time_s <= worst_s + kAfter_s; };
+  auto history = std::make_shared<ForceHistory>(
+      static_cast<std::size_t>(std::ranges::count_if(recording.rows, is_near, &RecordingRow::time_s)));
+  each_tick([&](const HistoryPoint& point, std::size_t) {
+    if (is_near(point.time_s)) history->append(point);
+  });
   const auto motion = motion_at(at, recording.rows.size(), [&](std::size_t i) {
     return std::pair(recording.rows[i].time_s, recording.rows[i].position_m - test_.offset_m());
   });
@@ -414,12 +409,12 @@ void LiveSession::update_verdict() {
   verdict_ = judge(judged, of_model ? models_.info(*models_.reference()).name : "");
   note(start_.verdict_s, true);
   models_.propose(*verdict_.chosen);
-  verdict_.detail = (of_model ? "There is no true force here: open a second recording to test on (O)."
-                     : live   ? "The test is the presses so far, against " + reference_words(true) + "."
-                     : tests_training()
-                         ? "The test is " + test_name() + ", to which the models were fitted."
-                         : "The test is " + test_name() + ", which no model was fitted to; it chose the model.") +
-                    verdict_.detail;
+  verdict_.detail =
+      (of_model           ? "There is no true force here: open a second recording to test on (O)."
+       : live             ? "The test is the presses so far, against " + reference_words(true) + "."
+       : tests_training() ? "The test is " + test_name() + ", to which the models were fitted."
+                          : "The test is " + test_name() + ", which no model was fitted to; it chose the model.") +
+      verdict_.detail;
 }
 
 Verdict LiveSession::verdict() const {

@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "devices/bridge/bridge_bus.h"  // allow_remote_bridges
 #include "devices/registry/device_registry.h"
 #include "engine/base/result.h"
 #include "engine/live/haptics_loop.h"
@@ -40,12 +41,12 @@ struct SessionRequest {
   // Additional models, of an earlier session (SessionModels::requests). `refits` false: the session has only these.
   std::vector<ModelRequest> kept{};
   bool refits = true;
-  std::uint64_t seed = 1;       // of the training recording and the fits; the hand and the test have seed + 1
-  bool realtime = true;         // asks for real-time scheduling
-  bool remote_bridges = false;  // bridge:tcp: may name another computer
-  std::string ready_models{};   // a folder (scenes/worker/model_worker.h); empty: every model is fitted
-  std::string data_folder{};    // for fault files; empty: the working directory
-  DeviceBus* bus = nullptr;     // outlives the session; null: the bus of this machine
+  std::uint64_t seed = 1;      // of the training recording and the fits; the hand and the test have seed + 1
+  bool realtime = true;        // asks for real-time scheduling
+  bool known_device = false;   // no notice about the device
+  std::string ready_models{};  // a folder (scenes/worker/model_worker.h); empty: every model is fitted
+  std::string data_folder{};   // for fault files; empty: the working directory
+  DeviceBus* bus = nullptr;    // outlives the session; null: the bus of this machine
 };
 
 // The devices that need no argument after their name, for code that may not include devices/. Blocks: opens and

@@ -94,7 +94,7 @@ void SessionModels::unite_equal() {
     if (!slot.request.is_file() && asked != listed.model->name()) listed.info.equals.push_back(asked);
   }
   for (Slot& slot : slots_)
-    if (slot.takes_part() && !slot.renamed) slot.info.name = distinct_name(slot.model->name(), &slot);
+    if (slot.takes_part()) slot.info.name = distinct_name(slot.model->name(), &slot);
   const auto shown = ready_slots();
   if (!shown.empty() && !slots_[selected_].takes_part()) selected_ = shown.front();
 }
@@ -226,12 +226,6 @@ void SessionModels::free(std::size_t index) {
   for (PublishedSet& set : sets_) set.models.erase(index);
 }
 
-void SessionModels::rename(std::size_t slot, const std::string& name) {
-  if (slot >= slots_.size() || name.empty()) return;
-  slots_[slot].info.name = distinct_name(name, &slots_[slot]);
-  slots_[slot].renamed = true;
-}
-
 void SessionModels::refit(std::size_t index, int centres) {
   if (index >= slots_.size() || !slots_[index].info.takes_centres || centres < 1) return;
   Slot& slot = slots_[index];
@@ -264,9 +258,9 @@ double SessionModels::longest_memory_s() const noexcept {
 
 bool SessionModels::has_room(const std::string& what) {
   if (room()) return true;
-  notices_.push_back({"cannot " + what + ": there are " + std::to_string(kMaxModels) +
-                          " models already; remove one (right button on its row)",
-                      true});
+  notices_.push_back(
+      {"cannot " + what + ": there are " + std::to_string(kMaxModels) + " models already; take one out (x on its row)",
+       true});
   return false;
 }
 

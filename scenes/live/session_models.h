@@ -126,8 +126,6 @@ class SessionModels {
   bool remove(std::size_t slot);
   // The slots whose models were removed or replaced since the last call. Discard all results of theirs.
   std::vector<std::size_t> read_freed() { return std::exchange(freed_, {}); }
-  // Appends a number where another listed slot has the name.
-  void rename(std::size_t slot, const std::string& name);
   // Fits the model, again if it is ready, with this number of centres, before those that wait. Ignored unless
   // `takes_centres`.
   void refit(std::size_t slot, int centres);
@@ -152,7 +150,7 @@ class SessionModels {
     int asked_centres = 0;                     // of the plan, before the user changed the number
     std::shared_ptr<const FittedModel> model;  // null until ready
     ProbedForces probed;                       // of the model
-    bool removed = false, renamed = false;
+    bool removed = false;
 
     bool hidden() const { return info.state == SlotState::hidden; }
     bool takes_part() const { return model != nullptr && info.state == SlotState::ready; }

@@ -14,8 +14,6 @@ constexpr double kTick_ns = 1e6;
 // Medians of six rounds of the same model differ by a few percent.
 constexpr double kEqualTime = 0.1;
 
-bool is_noticeable(const JudgedModel& one) { return one.p99_error_over_jnd > 1.0; }
-
 std::string difference(const JudgedModel& one, const std::string& reference) {
   return one.name + " differs from " + reference + " by " + jnd_text(one.p99_error_over_jnd) + " JND";
 }
@@ -47,7 +45,6 @@ Verdict judge(const std::vector<JudgedModel>& judged, const std::string& referen
   const JudgedModel& chosen = judged[ranking.recommended];
   Verdict verdict;
   verdict.chosen = chosen.slot;
-  verdict.noticeable = is_noticeable(chosen);
   verdict.headline = reference.empty() ? recommendation(chosen.name, candidates[ranking.recommended])
                                        : difference(chosen, reference) + ".";
   const auto lowest = std::ranges::min_element(judged, {}, &JudgedModel::p99_error_over_jnd) - judged.begin();

@@ -24,7 +24,6 @@ struct JudgedModel {
 
 struct Verdict {
   std::optional<std::size_t> chosen;  // slot of the recommended model; empty: `headline` says why there is none yet
-  bool noticeable = false;            // the 99 % error of the chosen model exceeds one JND
   std::string headline;               // what is compared, in one or two sentences
   std::string detail;                 // a second line: why not the model of the lowest error; may be empty
 };

@@ -134,7 +134,6 @@ TEST(Settings, ComeBackAsTheyWere) {
   ASSERT_TRUE(back.ok());
   EXPECT_EQ(*back, settings);
   settings.blocks = 2;
-  settings.difference = false;
   ASSERT_TRUE(write_settings(path, settings).ok());
   EXPECT_EQ(read_settings(path)->blocks, kAllBlocks) << "the next user starts with the comparison";
 }

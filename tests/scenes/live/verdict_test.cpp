@@ -17,7 +17,6 @@ TEST(Verdict, ComparesTheRecommendedModelWithTheBestOfTheOtherKind) {
       {model(0, "voxel", true, 2.5, 200.0), model(1, "greedy", true, 1.8, 240.0), model(2, "trend", false, 0.4, 390.0)},
       "");
   EXPECT_EQ(verdict.chosen, 2u);
-  EXPECT_FALSE(verdict.noticeable);
   EXPECT_EQ(verdict.headline,
             "Use trend: 99 % of the test is within one JND, a tick takes 0.39 us. greedy: 80 %, 1.6 times faster.");
   EXPECT_EQ(verdict.detail, "");
@@ -33,7 +32,6 @@ TEST(Verdict, OfEquallyGoodModelsTheFasterOneComesFirst) {
 
 TEST(Verdict, WhereNoneIsGoodEnoughBothErrorsAreNamed) {
   const Verdict verdict = judge({model(0, "greedy", true, 3.1, 390.0), model(1, "trend", false, 1.4, 395.0)}, "");
-  EXPECT_TRUE(verdict.noticeable);
   EXPECT_EQ(
       verdict.headline,
       "No model is good enough; the best is trend: 84 % of the test is within one JND, a tick takes 0.4 us. greedy: "
