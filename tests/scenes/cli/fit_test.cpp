@@ -252,7 +252,11 @@ TEST_F(FitVerb, AFolderIsFittedFileByFileAndContinued) {
   EXPECT_TRUE(fails(1, {"fit", "--recording", in, "--method", "random", "--out", out},
                     {out + " exists, and this command has not made it; ", "--force"}));
   folder_.with_file("in/d.csv", "time_s,position_m,force_N\n");
-  EXPECT_TRUE(fails(1, command, {"1 of 4 recordings are not done", "d.csv"}));
+  // The table of the others is written, and the error has a line for each recording without a model.
+  const ProgramRun run = run_palpate(command);
+  EXPECT_EQ(run.exit_code, 1);
+  EXPECT_TRUE(has_parts(run.out, {"3 of 4 recordings are done, 3 of them before"}));
+  EXPECT_TRUE(has_parts(run.err, {"error: 1 of 4 recordings are not done", "\n  " + in + "/d.csv: "}));
   EXPECT_TRUE(has_parts(read_text(out + "/models.csv"), {"\nc,trend,1000,", "\nd,,,,,", "d.csv"}));
   std::filesystem::remove(in + "/d.csv");
 
