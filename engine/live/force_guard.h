@@ -97,46 +97,42 @@ struct Impedance {
   double stiffness_N_per_m = 0.0, damping_Ns_per_m = 0.0;
 };
 
-// The delay T of the loop: halfway between the least and the largest age of the force that acted within 1/16 s, the
-// largest such value of the last second. Thus it includes transport, waits, and half the time for which a force is
-// held, however samples and commands are grouped. The largest counts, not the mean, because one late group is enough to
-// start an oscillation.
+// The delay T of the loop: the mean age of the forces that acted within 1/16 s, the largest such mean of the last
+// second. Thus it includes transport, waits, and half the time for which a force is held, however samples and commands
+// are grouped. The largest counts, because a group that is late from time to time is enough to start an oscillation; of
+// means, because the extremes of a link with jitter differ from second to second, and the force would with them.
 class LoopDelay {
  public:
   // `time_s` does not decrease. O(1).
   void add(const ForceAge& age, double time_s) noexcept {
     move_to(time_s);
     Ages& part = parts_[part_ % kParts];
-    part.least_s = std::min(part.least_s, age.least_s);
-    part.largest_s = std::max(part.largest_s, age.largest_s);
+    part.sum_s += age.middle_s();
+    part.count += 1.0;
   }
   void move_to(double time_s) noexcept {
-    const auto part = static_cast<std::int64_t>(time_s * static_cast<double>(kParts - 1));
-    for (std::int64_t i = std::max(part_ + 1, part - kParts + 1); i <= part; ++i) parts_[i % kParts] = {};
+    const auto part = static_cast<std::size_t>(std::max(0.0, time_s) * static_cast<double>(kParts - 1));
+    for (std::size_t i = std::max(part_ + 1, part < kParts ? 0 : part - kParts + 1); i <= part; ++i)
+      parts_[i % kParts] = {};
     part_ = std::max(part_, part);
   }
   // 0: nothing was added in the last second.
-  double largest_s() const noexcept {
-    double largest_s = 0.0;
-    for (const Ages& part : parts_) largest_s = std::max(largest_s, part.largest_s);
-    return largest_s;
-  }
   double delay_s() const noexcept {
     double delay_s = 0.0;
     // The present part is not complete.
-    for (std::int64_t i = 1; i < kParts; ++i) delay_s = std::max(delay_s, parts_[(part_ + i) % kParts].middle_s());
-    return delay_s > 0.0 ? delay_s : parts_[part_ % kParts].middle_s();
+    for (std::size_t i = 1; i < kParts; ++i) delay_s = std::max(delay_s, parts_[(part_ + i) % kParts].mean_s());
+    return delay_s > 0.0 ? delay_s : parts_[part_ % kParts].mean_s();
   }
 
  private:
   struct Ages {
-    double least_s = std::numeric_limits<double>::infinity(), largest_s = 0.0;
-    double middle_s() const noexcept { return largest_s > 0.0 ? 0.5 * (least_s + largest_s) : 0.0; }
+    double sum_s = 0.0, count = 0.0;
+    double mean_s() const noexcept { return count > 0.0 ? sum_s / count : 0.0; }
   };
-  static constexpr std::int64_t kParts = 17;
+  static constexpr std::size_t kParts = 17;
 
   std::array<Ages, kParts> parts_{};
-  std::int64_t part_ = 0;
+  std::size_t part_ = 0;
 };
 
 class StabilityLimit {
@@ -204,7 +200,7 @@ class PassivityController {
     double delay_s = 0.0;           // the least delay of the loop, for what it cannot measure itself
   };
 
-  // Once a tick, before the limiter. `timing.delay_s`: from a sample to the end of its force, at most 63 ticks.
+  // Once a tick, before the limiter. `timing.delay_s`: the age of the force that acted, at most 63 ticks.
   // `damping_Ns_per_m`: the most that it may render. `written_N`: the device's force in the last tick. Returns
   // at most `commanded_N`, never less than 0 if that is positive; not finite if it is not finite.
   double apply(double commanded_N, const Tool& tool, const Timing& timing, double damping_Ns_per_m,
@@ -231,9 +227,13 @@ class PassivityController {
   std::array<Passed, kMostPassed> passed_{};
   std::size_t count_ = 1;
   double energy_J_ = 0.0, debt_J_ = 0.0;
-  double depth_m_ = 0.0;                           // in the last tick, with the play
-  std::array<double, kMostUnderWay> written_N_{};  // ring of the last ticks
+  double depth_m_ = 0.0;  // in the last tick, with the play
+  struct Written {
+    double time_s = 0.0, force_N = 0.0;
+  };
+  std::array<Written, kMostUnderWay> written_{};  // ring of the last ticks
   std::size_t ticks_ = 0;
+  double time_s_ = 0.0;
   double arrived_N_ = 0.0;  // sum over the ticks since the last sample
   int arrivals_ = 0;
   double hold_s_ = 0.0, since_sample_s_ = 0.0;  // between the last two samples, and since the last one
@@ -252,8 +252,13 @@ class ForceGuard {
   void acted(const ForceAge& age, double tick_s = kHapticTick_s) noexcept {
     const double since_s = time_s_ - std::exchange(sampled_s_, time_s_);
     // A force that is written in a tick acts from the next tick on at the latest, until the next sample is used.
-    if (age.largest_s == 0.0 && since_s > 0.0) delay_.add({tick_s, since_s + tick_s}, time_s_);
-    if (age.least_s > 0.0) delay_.add(age, time_s_);
+    if (age.least_s > 0.0)
+      acted_ = age;
+    else if (age.largest_s == 0.0 && since_s > 0.0)
+      acted_ = {tick_s, since_s + tick_s};
+    else
+      return;
+    delay_.add(acted_, time_s_);
   }
 
   // The force of a model of this impedance, scaled as `wanted`; the scale moves there with a time constant of 50 ms.
@@ -276,8 +281,7 @@ class ForceGuard {
   // After `scaled`. `written_N`: the device's last force.
   double passive(double commanded_N, const Tool& tool, const Timing& timing, double written_N) noexcept {
     const double left_Ns_per_m = std::max(0.0, stability_.damping_Ns_per_m() - scale_.damping_Ns_per_m);
-    const Timing known{timing.step_s, timing.tick_s,
-                       std::max(delay_.largest_s(), timing.delay_s + 0.5 * timing.tick_s)};
+    const Timing known{timing.step_s, timing.tick_s, std::max(acted_.middle_s(), timing.delay_s + 0.5 * timing.tick_s)};
     return passivity_.apply(commanded_N, tool, known, left_Ns_per_m, written_N);
   }
 
@@ -291,6 +295,7 @@ class ForceGuard {
     if (std::abs(wanted - value) < kArrived) value = wanted;
   }
 
+  ForceAge acted_;  // of the force that acted before the last sample
   LoopDelay delay_;
   StabilityLimit stability_;
   ForceScale scale_;  // of the present force
