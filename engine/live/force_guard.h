@@ -252,20 +252,25 @@ class ForceGuard {
   void acted(const ForceAge& age, double tick_s = kHapticTick_s) noexcept {
     const double since_s = time_s_ - std::exchange(sampled_s_, time_s_);
     // A force that is written in a tick acts from the next tick on at the latest, until the next sample is used.
-    if (age.least_s > 0.0)
-      acted_ = age;
-    else if (age.largest_s == 0.0 && since_s > 0.0)
-      acted_ = {tick_s, since_s + tick_s};
-    else
-      return;
+    const bool known = age.largest_s >= 0.0;
+    // A force whose delay nobody knows drives a hand, whatever the model.
+    waits_ = waits_ && !known;
+    if (!known || !(age.largest_s > 0.0 || since_s > 0.0)) return;
+    acted_ = age.largest_s > 0.0 ? age : ForceAge{tick_s, since_s + tick_s};
     delay_.add(acted_, time_s_);
   }
 
   // The force of a model of this impedance, scaled as `wanted`; the scale moves there with a time constant of 50 ms.
-  // `held`: by a person, so that the stability limit applies. With the default scale the force stays bit-identical.
+  // `held`: by a person, so that the stability limit applies, and there is no force before the first age is known. With
+  // the default scale the force stays bit-identical.
   double scaled(double force_N, const Impedance& model, const ForceScale& wanted, bool held, const Tool& tool,
                 const Timing& timing) noexcept {
     time_s_ += timing.step_s;
+    if (held && waits_) {
+      scale_ = {0.0, 0.0};
+      share_ = 0.0;
+      return 0.0;
+    }
     delay_.move_to(time_s_);
     stability_.update(std::max({delay_.delay_s(), 1.5 * timing.tick_s, timing.delay_s}), timing.step_s);
     const ForceScale unbounded = wanted.limited(StabilityLimit(), {});
@@ -300,6 +305,7 @@ class ForceGuard {
   StabilityLimit stability_;
   ForceScale scale_;  // of the present force
   PassivityController passivity_;
+  bool waits_ = true;  // for the first age
   double share_ = 1.0, time_s_ = 0.0;
   double sampled_s_ = std::numeric_limits<double>::infinity();  // time of the last sample; none
 };
