@@ -8,7 +8,7 @@
 // of B that the passivity controller provides. b and c are those of the simulation in
 // tests/accuracy/closed_loop_link_test.cpp: over rates, groups, delays and jitter, the lightest hand (50 g, 2.2 N s/m)
 // keeps still within 0.35 mm up to K T = 2.1 N s/m + 0.46 B, with encoder steps up to 30 um; the limit is 0.85 of that.
-// A coarser encoder is not covered: the controller has a play of one step.
+// The controller has a play of one step, so that c goes to 0 with coarser ones; at 0.1 mm such a hand may swing by 0.7.
 // B limits the sum of the damping of model and user, and that of user and controller.
 //
 // Passivity controller (Hannaford & Ryu 2002; Ryu et al. 2004 for a reference that follows the depth). A late force is
@@ -140,6 +140,10 @@ class StabilityLimit {
   static constexpr double kLightestHand_kg = 0.05;      // m, a finger on which a tool rests
   static constexpr double kHandDamping_Ns_per_m = 1.8;  // b; relaxed fingers have more (Hajian & Howe 1997)
   static constexpr double kShareOfDamping = 0.38;       // c
+  static constexpr double kFine_m = 30e-6, kCoarse_m = 100e-6;
+  explicit StabilityLimit(double encoder_step_m = 0.0) noexcept
+      : share_(kShareOfDamping * std::clamp((kCoarse_m - encoder_step_m) / (kCoarse_m - kFine_m), 0.0, 1.0)) {}
+
   // Follows the current delay with a time constant of 0.1 s where it grows and 2 s where it falls, because an
   // increase of stiffness during a press adds energy. The first call takes it at once; before it nothing is limited.
   void update(double lag_s, double step_s) noexcept {
@@ -149,9 +153,7 @@ class StabilityLimit {
 
   double lag_s() const noexcept { return lag_s_; }
   double damping_Ns_per_m() const noexcept { return 0.5 * kLightestHand_kg / lag_s_; }
-  double stiffness_N_per_m() const noexcept {
-    return (kHandDamping_Ns_per_m + kShareOfDamping * damping_Ns_per_m()) / lag_s_;
-  }
+  double stiffness_N_per_m() const noexcept { return (kHandDamping_Ns_per_m + share_ * damping_Ns_per_m()) / lag_s_; }
   // The largest stable factor of a force with this impedance.
   double largest_scale(const Impedance& of) const noexcept {
     return std::min(stiffness_N_per_m() / std::max(of.stiffness_N_per_m, kNone),
@@ -160,7 +162,7 @@ class StabilityLimit {
 
  private:
   static constexpr double kRise_s = 0.1, kFall_s = 2.0, kNone = 1e-9;
-  double lag_s_ = 0.0;
+  double share_, lag_s_ = 0.0;
 };
 
 // The scale that the user wants for the force of the active model, and additional damping:
@@ -246,7 +248,7 @@ class ForceGuard {
   using Tool = PassivityController::Tool;
   using Timing = PassivityController::Timing;
 
-  explicit ForceGuard(double encoder_step_m) noexcept : passivity_(encoder_step_m) {}
+  explicit ForceGuard(double encoder_step_m) noexcept : stability_(encoder_step_m), passivity_(encoder_step_m) {}
 
   // For every sample, before `scaled` of the same tick.
   void acted(const ForceAge& age, double tick_s = kHapticTick_s) noexcept {
