@@ -259,7 +259,11 @@ Result<Samples> make_samples(std::vector<PreparedRecordingPointer> recordings, c
     if (Status status = add_rows(samples, *one, stride, control); !status) return status.error();
   const bool clear = std::ranges::any_of(recordings, [](const auto& one) { return one->surface.identified(); });
   const bool air = std::ranges::any_of(recordings, [](const auto& one) { return one->surface.air.found; });
-  if (!clear && !air) move_surface(samples, outer_surface_m(samples, jnd));
+  if (!clear && !air) {
+    const double out_m = outer_surface_m(samples, jnd);
+    samples.surface_outside = out_m < 0.0;
+    move_surface(samples, out_m);
+  }
   measure(samples, jnd);
   if (samples.contact.empty()) {
     return Error{

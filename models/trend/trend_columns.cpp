@@ -30,6 +30,16 @@ using Basis = std::array<std::array<double, kDriveCoefficients>, kCurveTerms>;
 constexpr Basis kDrives{{{1.0, -1.0, 1.0 / 3.0, 0.0}, {0.0, 1.0, -2.0 / 3.0, 0.0}, {0.0, 0.0, 1.0 / 3.0, 0.0}}};
 constexpr Basis kFrictions{{{4.0, -6.0, 4.0, -1.0}, {1.0, 0.0, 0.0, 0.0}, {0.0, 1.0, 0.0, 0.0}}};
 
+// Of the elastic response. A material that is pulled at its outermost position has a force below 0 there, at which E
+// begins instead of at 0.
+std::vector<ElasticSpline> elastic_basis(const Samples& samples) {
+  std::vector<ElasticSpline> basis = spline_basis();
+  if (!samples.surface_outside || samples.lowest_force_N == 0.0) return basis;
+  ElasticSpline& pull = basis.emplace_back();
+  for (std::size_t piece = 0; piece < kElasticPieces; ++piece) pull.pieces_N[piece * kElasticCoefficients] = -1.0;
+  return basis;
+}
+
 // One feature for each basis function of a part.
 void add_columns(std::vector<FeatureSpec>& columns, const FeatureSpec& candidate, std::size_t part,
                  double reference_depth_m) {
@@ -49,10 +59,11 @@ Trend trend_from(const TrendColumns& columns, const Eigen::VectorXd& x) {
   const Samples& samples = columns.samples();
   Trend trend;
   trend.reference_depth_m = samples.depth_m;
-  trend.elastic = combined_spline(spline_basis(), x.data());
+  const std::vector<ElasticSpline> elastic = elastic_basis(samples);
+  trend.elastic = combined_spline(elastic, x.data());
   if (has_kind(columns.list().features, FeatureKind::velocity)) {
     trend.thinning_velocity_m_per_s = samples.rms_velocity_m_per_s;
-    auto column = static_cast<Eigen::Index>(kElasticTerms);
+    auto column = static_cast<Eigen::Index>(elastic.size());
     for (auto* viscosity : {&trend.viscosity_Ns_per_m, &trend.thinning_Ns_per_m}) {
       for (std::size_t k = 0; k < kViscosityCoefficients; ++k, ++column)
         for (std::size_t j = 0; j < kViscosityCoefficients; ++j) (*viscosity)[j] += x(column) * kViscousBasis[k][j];
@@ -170,11 +181,12 @@ Result<TrendColumns> TrendColumns::make(const Samples& samples, FeatureList list
   made.samples_ = &samples;
   made.stride_ = (samples.contact.size() + most_rows - 1) / most_rows;
   for (std::size_t i = 0; i < samples.contact.size(); i += made.stride_) made.rows_.push_back(samples.contact[i]);
+  const std::vector<ElasticSpline> elastic = elastic_basis(samples);
   std::vector<FeatureSpec> memory;  // the columns of branches and bristles
   Eigen::Index columns = 0;
   for (const FeatureSpec& spec : list.features) {
     for (std::size_t p = 0; p < spec.part_count; ++p) add_columns(memory, spec, p, samples.depth_m);
-    const std::size_t count = spec.kind == FeatureKind::depth      ? kElasticTerms
+    const std::size_t count = spec.kind == FeatureKind::depth      ? elastic.size()
                               : spec.kind == FeatureKind::velocity ? 2 * kViscosityCoefficients
                                                                    : kCurveTerms * spec.part_count;
     ColumnList& of_feature = made.feature_columns_.emplace_back(count);
@@ -183,7 +195,6 @@ Result<TrendColumns> TrendColumns::make(const Samples& samples, FeatureList list
   }
   const auto of_memory = features_at(samples, memory, made.rows_, control);
   if (!of_memory) return of_memory.error();
-  const std::vector<ElasticSpline> elastic = spline_basis();
   const bool viscous = has_kind(list.features, FeatureKind::velocity);
   made.list_ = std::move(list);
   made.terms_.resize(static_cast<Eigen::Index>(made.count()), columns);

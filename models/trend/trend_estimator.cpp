@@ -134,12 +134,14 @@ TrendEstimator::Equations TrendEstimator::sum(const std::vector<double>& scale) 
   return equations;
 }
 
-// The penalised solution on these columns, 0 in all others. The columns of the elastic response come first.
+// The penalised solution on these columns, 0 in all others. The columns of the elastic response come first, its splines
+// before its force at the surface.
 Eigen::VectorXd TrendEstimator::solve(const Equations& equations, const ColumnList& columns, double smoothness) const {
   constexpr auto kElastic = static_cast<Eigen::Index>(kElasticTerms);
   Eigen::MatrixXd gram = equations.gram;
   const double smooth = smoothness * equations.scale_squares * static_cast<double>(kElasticPieces);
-  gram.diagonal().tail(gram.cols() - kElastic) *= 1.0 + part_error_ * part_error_;
+  const auto elastic = static_cast<Eigen::Index>(columns_.feature_columns().front().size());
+  gram.diagonal().tail(gram.cols() - elastic) *= 1.0 + part_error_ * part_error_;
   for (Eigen::Index k = 0; k + 1 < kElastic; ++k) {
     gram(k, k) += smooth;
     gram(k + 1, k + 1) += smooth;
