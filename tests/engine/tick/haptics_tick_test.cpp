@@ -115,6 +115,20 @@ TEST(HapticsTick, OneModelsForceDoesNotDependOnItsNeighbours) {
   }
 }
 
+TEST(HapticsTick, AModelWithoutABoundHasNoneInContact) {
+  ModelData data = test::example_model("trend", KernelKind::cubic, test::maxwell_features(), 3);
+  data.error_bound.reset();
+  for (const std::size_t first : {std::size_t{0}, std::size_t{1900}}) {  // the second begins in mid-press
+    HapticsTick tick({}, {fitted(data)});
+    const Recording recording = test::example_recording(4000, 1000.0);
+    for (std::size_t i = first; i < recording.rows.size(); ++i) {
+      tick.step(tool_sample(recording.rows[i]));
+      const TickSnapshot& found = tick.assess();
+      ASSERT_EQ(std::isnan(found.predicted_error_N[0]), found.in_contact) << i;
+    }
+  }
+}
+
 // The bound of a stream that begins in mid-press covers what its past may have been, until the tool leaves the
 // material.
 TEST(HapticsTick, AStreamThatBeginsInContactHasAWiderBound) {
