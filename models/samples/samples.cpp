@@ -339,7 +339,7 @@ std::vector<RecordingEnds> recording_ends(const Samples& samples, const std::vec
     const double recorded_m = row.tool.position_m + samples.surface_m + samples.offsets[recording].offset_m;
     if (samples.begins_recording(i)) {
       filter.reset();
-      all.push_back({recorded_m, recorded_m, {}});
+      all.push_back({recorded_m, recorded_m, {}, row.force_N + samples.offsets[recording].force_zero_N});
     }
     filter.update(row.tool, row.motion);
     const bool ends = i + 1 == samples.rows.size() || samples.begins_recording(i + 1);

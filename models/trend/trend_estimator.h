@@ -44,7 +44,7 @@ class TrendEstimator {
   // they would be extrapolated.
   CrossValidated cross_validate(const ColumnList& columns) const { return cross_validate(columns, smoothness_); }
   // The weights fitted to all rows, one for each column of the rows; 0 outside `columns`.
-  Eigen::VectorXd fit(const ColumnList& columns) const { return solve(equations_.back(), columns, smoothness_); }
+  Eigen::VectorXd fit(const ColumnList& columns) const;
   double smoothness() const { return smoothness_; }
   ColumnList all_columns() const {
     return columns_.columns_of([](std::size_t) { return true; });
@@ -59,7 +59,8 @@ class TrendEstimator {
     Eigen::VectorXd start;       // the solution with all columns, an initial value
   };
   Equations gather(int left_out) const;
-  Equations sum(const std::vector<double>& scale) const;
+  // Adds the rows, each times this change of its s_i^2.
+  void add(Equations& equations, const std::vector<double>& squares) const;
   Eigen::VectorXd solve(const Equations& equations, const ColumnList& columns, double smoothness) const;
   CrossValidated cross_validate(const ColumnList& columns, double smoothness) const;
 
@@ -67,7 +68,8 @@ class TrendEstimator {
   JndLine jnd_;
   double part_error_, smoothness_;
   std::vector<double> deepest_elsewhere_m_;  // by fold
-  std::vector<Equations> equations_;         // index: the fold that is left out; the last of all rows
+  // Index: the fold that is left out; of all rows as well where the smoothness is selected, for `fit`.
+  std::vector<Equations> equations_;
 };
 
 // Below: the selection, by cross-validation and the selection rule, of the parameters of the memory that a linear

@@ -35,7 +35,8 @@ constexpr double kShareThatMatters = 0.005;
 struct ReplayedModel {
   LoadedModel loaded;
   ErrorSummary as_recorded;
-  ErrorSummary surface_moved;
+  ErrorSummary surface_moved, beginning_moved;
+  double beginning_m = 0.0;         // of `beginning_moved`; 0: there is none
   BoundFigures bound, bound_moved;  // as recorded, with the surface moved
   OffsetEstimate surface;
   ModelTiming time;
@@ -110,6 +111,11 @@ OrderedJson model_json(const ReplayedModel& replayed) {
   }
   add_figures(object["surface_moved"], replayed.surface_moved);
   object["surface_offset_m"] = replayed.surface.at;
+  object["beginning_moved"] = nullptr;
+  if (replayed.beginning_m != 0.0) {
+    object["beginning_moved"] = {{"offset_m", replayed.beginning_m}};
+    add_figures(object["beginning_moved"], replayed.beginning_moved);
+  }
   object["surface_identified"] = replayed.surface.identified;
   object["predicted_error"] = nullptr;
   if (replayed.bound.has_bounds()) {  // JSON has null for NaN
@@ -152,6 +158,7 @@ std::vector<std::pair<std::string, std::string>> table_cells(const ReplayedModel
                                                                   fixed(1e3 * model.surface.standard_error, 3)
                                                             : "not identified");
   add_errors("ALIGNED ", model.surface_moved);
+  add("BEGINNING MOVED WITHIN JND %", model.beginning_m != 0.0, 1e2 * model.beginning_moved.within_jnd, 2);
   add("WITHIN BOUND %", model.bound.has_bounds(), 1e2 * model.bound.coverage, 1);
   add("ALIGNED WITHIN BOUND %", model.bound.has_bounds(), 1e2 * model.bound_moved.coverage, 1);
   add("BOUND JND", std::isfinite(model.bound.median_over_jnd), model.bound.median_over_jnd, 2);
@@ -183,6 +190,17 @@ void print_beginning_note(const std::vector<ReplayedModel>& models) {
               first->began.c_str());
 }
 
+// Says, for the first such model, that the recording begins with the force of a training recording, elsewhere.
+void print_preload_note(const std::vector<ReplayedModel>& models) {
+  const auto first = std::ranges::find_if(models, [](const ReplayedModel& one) { return one.beginning_m != 0.0; });
+  if (first == models.end()) return;
+  std::printf(
+      "note: this recording begins with the force of a training recording of %.64s, %+.3f mm from it: %.2f %% within "
+      "the JND as recorded, %.2f %% with both beginnings at one place; that uses a force of the test\n",
+      first->loaded.name.c_str(), 1e3 * first->beginning_m, 1e2 * first->as_recorded.within_jnd,
+      1e2 * first->beginning_moved.within_jnd);
+}
+
 // Says, for the first such model, that the recording does not distinguish an offset of the surface and of the force.
 void print_ambiguity_note(const std::vector<ReplayedModel>& models) {
   const auto ambiguous = [](const ReplayedModel& one) { return one.surface.force_offset_N != 0.0; };
@@ -210,6 +228,7 @@ void print_recording(const ReplayedRecording& replayed, bool all) {
   print_table(rows, true);
   print_beginning_note(replayed.models);
   print_surface_note(replayed.models);
+  print_preload_note(replayed.models);
   print_ambiguity_note(replayed.models);
 }
 
@@ -309,6 +328,7 @@ Result<ReplayedRecording> replay_one(const CheckedFile& checked, const Recording
   }
   EvaluationRequest request;
   request.after = after;
+  request.move_beginning = true;
   request.also = [&](const RecordingRow& row, const TickSnapshot& snapshot, const HapticsTick& tick) {
     if (forces) forces->add(row, snapshot, tick);
     const auto begin = snapshot.force_N.begin();
@@ -326,9 +346,10 @@ Result<ReplayedRecording> replay_one(const CheckedFile& checked, const Recording
   ReplayedRecording replayed{checked.path, evaluation->samples, evaluation->no_force.summary().samples, {}};
   const std::vector<ModelTiming> times = time_models(pointers, evaluation->timing);
   for (std::size_t i = 0; i < models.size(); ++i) {
-    const auto& [recorded, moved, surfaces, began] = evaluation->models[i];
-    replayed.models.push_back({models[i], recorded.summary(), moved.summary(), recorded.bounds(), moved.bounds(),
-                               surfaces.front(), times[i], began_words(models[i].model->data(), began)});
+    const auto& [recorded, moved, begins, surfaces, began, beginning_m] = evaluation->models[i];
+    replayed.models.push_back({models[i], recorded.summary(), moved.summary(), begins.summary(), beginning_m,
+                               recorded.bounds(), moved.bounds(), surfaces.front(), times[i],
+                               began_words(models[i].model->data(), began)});
   }
   if (plot_path.empty()) return replayed;
   const Status drawn =

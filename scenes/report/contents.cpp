@@ -28,6 +28,7 @@ Table models_table(const ReportData& data) {
     table.begin_row();
     table.add({"model", "model"}, one.name);
     table.add({"size", "size"}, one.size);
+    table.add({"rank", "rank"}, one.rank > 0 ? TableCell(one.rank) : TableCell(kNoNumber));
     table.add({"seeds", "seeds"}, one.seeds);
     table.add({"seed", ""}, one.plan ? one.plan->seed : 0);
     table.add({"contact_samples", "samples"}, errors.samples);

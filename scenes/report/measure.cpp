@@ -38,6 +38,7 @@ struct Fitted {
   std::shared_ptr<const FittedModel> model;
   double error_over_jnd = 0.0;  // cross-validated in the training recordings
   double seconds = 0.0;
+  Eigen::Index rank = 0;  // as in MethodFit
 };
 
 class Measurement {
@@ -97,8 +98,8 @@ class Measurement {
     if (!one) return Error{plan_name(plan) + ": " + one.error().message};
     if (first_fold() && one->choices)
       data_.choices.try_emplace(plan.selects_centres() ? plan.centres : 0, *one->choices);
-    return fitted_.emplace_back(
-        Fitted{plan, std::make_shared<const FittedModel>(std::move(one->data)), one->error_over_jnd, one->seconds});
+    return fitted_.emplace_back(Fitted{plan, std::make_shared<const FittedModel>(std::move(one->data)),
+                                       one->error_over_jnd, one->seconds, one->rank});
   }
 
   // The number of centres of this fold, from the cross-validated errors of random centres.
@@ -136,6 +137,7 @@ class Measurement {
       const int size = result.model->centre_count();
       result.least_size = result.fits.empty() ? size : std::min(result.least_size, size);
       result.size = std::max(result.size, size);
+      result.rank = one->rank;
       result.fits.push_back(result.model);
     }
     return {};
@@ -157,11 +159,11 @@ class Measurement {
 
   void finish(ModelResult& result) const {
     if (!result.plan) return;
-    const auto& [recorded, moved, surfaces, began] = evaluation_.models[result.place];
-    result.errors = recorded.unit_errors();
-    result.moved = moved.summary();
-    result.bound = recorded.bounds();
-    result.bound_moved = moved.bounds();
+    const ModelEvaluation& found = evaluation_.models[result.place];
+    result.errors = found.as_recorded.unit_errors();
+    result.moved = found.surface_moved.summary();
+    result.bound = found.as_recorded.bounds();
+    result.bound_moved = found.surface_moved.bounds();
     result.name = plan_name(*result.plan);
     if (!result.plan->selects_centres() || result.size == 0) return;
     // A fit has at most as many centres as sites; the name has the actual number.

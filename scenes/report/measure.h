@@ -54,6 +54,7 @@ struct ModelResult {
   bool selects_size = false;      // its number of centres is selected in each fold
   int size = 0;                   // centres, or nodes of the grid; the largest of all folds
   int least_size = 0;             // the smallest of all folds
+  Eigen::Index rank = 0;          // of its equations, of centres and tail, in the last fold; 0: without equations
   UnitErrors errors;              // positions as recorded
   ErrorSummary moved;             // with the surface offset of every test recording subtracted
   BoundFigures bound, bound_moved;
