@@ -130,7 +130,7 @@ Table gains_table(const ReportData& data) {
   for (const PartGain& one : data.gains) {
     table.begin_row();
     table.add({"feature", "feature"}, one.name);
-    table.add({"weight_above_0", "weight above 0"}, yes_or_no(one.taken));
+    table.add({"weight_above_0", "used"}, yes_or_no(one.taken));
     table.add({"error_over_jnd_with", "cross-validated error with it [JND]"}, one.error_with);
     table.add({"error_over_jnd_without", "without"}, one.error_without);
   }
