@@ -151,8 +151,18 @@ double preload_offset_m(const Recording& recording, const EvaluatedModel& model)
   return same && std::abs(offset_m) >= kLeastMove * model.model->deepest_m() ? offset_m : 0.0;
 }
 
+Recording with_force_zero(Recording recording, double force_zero_N) {
+  for (RecordingRow& row : recording.rows) row.force_N -= force_zero_N;
+  return recording;
+}
+
 Result<Evaluation> evaluate(const Recording& recording, const std::vector<EvaluatedModel>& models,
                             const EvaluationRequest& request, Evaluation pooled) {
+  if (request.force_zero_N != 0.0) {
+    EvaluationRequest same = request;
+    same.force_zero_N = 0.0;
+    return evaluate(with_force_zero(recording, request.force_zero_N), models, same, std::move(pooled));
+  }
   if (const Status status = Evaluator(recording, models, request, pooled).run(); !status) return status.error();
   return pooled;
 }

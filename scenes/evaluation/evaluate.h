@@ -87,6 +87,7 @@ struct EvaluationRequest {
   // Errors count from this time of the recording on. Earlier rows are replayed because the features have memory.
   double counted_from_s = -std::numeric_limits<double>::infinity();
   const Recording* after = nullptr;  // the recording that this one continues (engine/tick/replay.h)
+  double force_zero_N = 0.0;         // subtracted from every measured force, also for `also`: that of free air
   bool move_surface = true;          // false: the figures with the surface moved equal those as recorded
   bool move_beginning = false;       // true: also those with `beginning_m`, where it is not 0
   // The models from which one common surface offset is estimated. Empty: each model has its own estimate.
@@ -113,6 +114,9 @@ struct Evaluation {
 // the evaluation of as many models on earlier recordings, to which this one is added. Errors: interrupted.
 Result<Evaluation> evaluate(const Recording& recording, const std::vector<EvaluatedModel>& models,
                             const EvaluationRequest& request = {}, Evaluation pooled = {});
+
+// The recording with this force subtracted from every row.
+Recording with_force_zero(Recording recording, double force_zero_N);
 
 // The motion of a tool at one moment, and how long it stood still before the movement that it belongs to.
 struct Motion {

@@ -66,8 +66,8 @@ std::vector<std::string> fields(const std::string& line) {
 
 TEST_F(ReplayVerb, JsonHasTheContractsFields) {
   const Json object = results(models_);
-  EXPECT_EQ(keys(object),
-            (std::vector<std::string>{"recording", "samples", "contact_samples", "surface_offset_m", "models"}));
+  EXPECT_EQ(keys(object), (std::vector<std::string>{"recording", "samples", "contact_samples", "force_zero_N",
+                                                    "surface_offset_m", "models"}));
   EXPECT_EQ(object["recording"], recording_);
   EXPECT_EQ(object["samples"], 3000);
   const std::uint64_t contact = object["contact_samples"];
