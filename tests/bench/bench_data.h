@@ -3,7 +3,6 @@
 // deterministic.
 #pragma once
 
-#include <cstdint>
 #include <functional>
 
 #include "models/fit/fit.h"

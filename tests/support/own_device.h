@@ -1,7 +1,6 @@
 // The first of the three files of a new device: a class of six functions. The tool is moved in and out by a motor.
 #pragma once
 
-#include <memory>
 #include <string>
 
 #include "devices/registry/device_registry.h"

@@ -1,7 +1,6 @@
 // The frames of the bridge, byte for byte, and the finder of frames in a stream.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <string>
@@ -127,18 +126,6 @@ TEST(FrameFinder, ReportsAnotherVersion) {
   DeviceReading reading;
   EXPECT_EQ(verdict_of(other, &reading), ReportVerdict::wrong_version);
   EXPECT_EQ(reading.version, 2);
-}
-
-TEST(FrameFinder, NoiseHasNoVersion) {
-  RandomStream random(7, 0);
-  Bytes noise;
-  for (int i = 0; i < 200'000; ++i) {
-    // The first bytes of a frame, more often than in noise.
-    const auto any = [&] { return static_cast<std::uint8_t>(random.index(256)); };
-    for (const std::uint8_t byte : {std::uint8_t{0x50}, std::uint8_t{0x42}, any(), bridge::kFromDevice, any()})
-      noise.push_back(byte);
-  }
-  EXPECT_EQ(found_in(noise), bridge::Found::nothing);
 }
 
 }  // namespace

@@ -49,13 +49,5 @@ TEST(DeviceCalibration, ErrorsHaveThePlace) {
        {R"("ramp_s": 0.5)", R"("ramp_s": 0.5, "colour": 3)", {"openffboard.json:13:28:", "colour", "kind"}}});
 }
 
-TEST(DeviceCalibration, RefusesAMissingFileAndAnotherKind) {
-  const test::TemporaryFolder folder;
-  EXPECT_TRUE(test::has_parts(read_calibration(folder.path(), kOpenFfBoardProtocol).error().message,
-                              {folder.file("openffboard.json"), "assets/devices/"}));
-  EXPECT_TRUE(
-      test::has_parts(complaint(test::read_text(kAssets + "/bridge.json")), {"kind", "\"bridge\"", "openffboard"}));
-}
-
 }  // namespace
 }  // namespace palpate

@@ -66,20 +66,6 @@ TEST(SpaceMouse, KeepsItsTargetWhileSilentAndIsAtZeroNearZero) {
   EXPECT_NEAR(moved.tool.target_m(), -0.006, 1e-12) << "no deflection is that large";
 }
 
-TEST(SpaceMouse, LetsGoWhenItIsUnplugged) {
-  Moved moved;
-  moved.report(200, 1.0);
-  moved.tool.unplugged();
-  EXPECT_NEAR(moved.tool.target_m(), -0.006, 1e-12);
-}
-
-TEST(SpaceMouse, AnUnreadableReportMovesNothing) {
-  Moved moved;
-  moved.report(200, 1.0);
-  moved.report(5000, 2.0);
-  EXPECT_NEAR(moved.tool.target_m(), -0.006 + 200.0 / 17500.0, 1e-12);
-}
-
 // Reads `device` about every millisecond, in real time.
 template <typename Done>
 bool read_until(Device& device, DeviceSample& sample, Done done) {

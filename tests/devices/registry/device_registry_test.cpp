@@ -89,33 +89,11 @@ TEST(DeviceRegistry, AutoNotesTheFallbackAndItsReason) {
   }
 }
 
-TEST(DeviceRegistry, HidIsNeverAnythingElse) {
-  OtherBuses buses;
-  EXPECT_TRUE(test::has_parts(open_device("hid", request_with(nothing_plugged_in())).error().message,
-                              {"--device", "palpate devices"}));
-  EXPECT_EQ(open_device("hid", request_with(buses.refused)).error().message, "/dev/hidraw7: no permission");
-  EXPECT_TRUE(
-      test::has_parts(open_device("hid", request_with(buses.mouse)).error().message, {"--device auto", "SpaceMouse"}));
-}
-
 TEST(DeviceRegistry, ErrorsHaveAdvice) {
   EXPECT_TRUE(
       test::has_parts(open_device("joystick").error().message, {"\"joystick\"", "FILE", "TARGET", "palpate devices"}));
   EXPECT_TRUE(test::has_parts(open_device("replay:").error().message, {"--device", "FILE.csv"}));
   EXPECT_EQ(open_device("replay:/nowhere.csv").error().message.rfind("/nowhere.csv", 0), 0u);
-}
-
-TEST(DeviceRegistry, TheProgramListsThem) {
-  const auto run = test::run_palpate({"devices"});
-  EXPECT_EQ(run.exit_code, 0);
-  EXPECT_EQ(run.err, "");
-  for (const DeviceDescription& description : list_devices()) {
-    EXPECT_TRUE(test::has_parts(run.out, {description.name}));
-  }
-  for (const DeviceProtocol* protocol : kHidProtocols) {
-    EXPECT_TRUE(test::has_parts(run.out, {std::string(protocol->description) + "; tested on real hardware: no"}));
-  }
-  EXPECT_TRUE(test::has_parts(run.out, {"PLUGGED IN"}));
 }
 
 // The third file of a new device is the table of devices, with a new row. These tests use their own table.

@@ -56,15 +56,6 @@ TEST(HandDevice, IsPushedBackByTheForce) {
       << "where nothing pushes back, only its overshoot is deeper";
 }
 
-TEST(HandDevice, TheSameSeedMovesTheSame) {
-  HandDevice a(5);
-  HandDevice b(5);
-  HandDevice other(6);
-  const std::vector<double> first = explore(a, 500.0, 5000);
-  EXPECT_EQ(first, explore(b, 500.0, 5000));
-  EXPECT_NE(first, explore(other, 500.0, 5000));
-}
-
 TEST(HandDevice, GivesOneSampleATimeAndSitsOutAStall) {
   HandDevice device;
   explore(device, 500.0, 2000);
@@ -74,18 +65,6 @@ TEST(HandDevice, GivesOneSampleATimeAndSitsOutAStall) {
   const double before_m = sample.tool.position_m;
   ASSERT_TRUE(device.read(60.0, sample));
   EXPECT_LT(std::abs(sample.tool.position_m - before_m), 0.02) << "20 ms at no more than 1 m/s";
-}
-
-TEST(HandDevice, ResumesFromWhereTheToolIs) {
-  HandDevice device;
-  DeviceSample sample;
-  device.resume_at(4e-3, 10.0);
-  double last_m = 4e-3;
-  for (int i = 1; i < 2000; ++i) {
-    ASSERT_TRUE(device.read(10.0 + kTick_s * i, sample));
-    ASSERT_LT(std::abs(sample.tool.position_m - last_m), 1e-3) << "a jump";
-    last_m = sample.tool.position_m;
-  }
 }
 
 }  // namespace

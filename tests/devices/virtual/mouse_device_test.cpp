@@ -83,14 +83,6 @@ TEST(MouseDevice, MovesWithARampAndStopsAtTheLimit) {
   EXPECT_NEAR(advance(device, 9.33, 1000).tool.position_m, rest_m, 1e-9);
 }
 
-TEST(MouseDevice, ReportsThatItIsIdle) {
-  MouseDevice device;
-  EXPECT_TRUE(device.idle(0.0)) << "never touched";
-  device.nudge(1e-3, 100.0);
-  EXPECT_FALSE(device.idle(119.9));
-  EXPECT_TRUE(device.idle(120.0));
-}
-
 TEST(MouseDevice, TakesTargetsFromAnotherThread) {
   MouseDevice device;
   std::thread window([&] {

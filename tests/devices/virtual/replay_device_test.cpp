@@ -75,29 +75,6 @@ TEST(ReplayDevice, MovesTheSurfaceAndRestarts) {
   EXPECT_EQ(device.surface_offset_m(), 0.25e-3);
 }
 
-TEST(ReplayDevice, BeginsAgainAtTheEnd) {
-  ReplayDevice device(ramp(100, 1000.0));
-  Player player{device};
-  const std::vector<DeviceSample> samples = player.play(350);
-  ASSERT_GT(samples.size(), 300u);
-  for (std::size_t i = 0; i < samples.size(); ++i) {
-    ASSERT_EQ(samples[i].measured_N, 1e-3 * static_cast<double>(i % 100)) << i;
-    ASSERT_EQ(samples[i].restart, i % 100 == 0) << i;
-  }
-}
-
-TEST(ReplayDevice, PausesAndGoesOn) {
-  ReplayDevice device(ramp(1000, 1000.0));
-  Player player{device};
-  const std::size_t before = player.play(100).size();
-  device.pause(true);
-  EXPECT_TRUE(player.play(200).empty());
-  device.pause(false);
-  const std::vector<DeviceSample> after = player.play(50);
-  ASSERT_NEAR(static_cast<double>(after.size()), 50.0, 1.0) << "a row on the tick's edge";
-  EXPECT_EQ(after.front().measured_N, 1e-3 * static_cast<double>(before)) << "none lost";
-}
-
 TEST(ReplayDevice, PlaysFasterAndSlower) {
   ReplayDevice device(ramp(10000, 1000.0));
   Player player{device};

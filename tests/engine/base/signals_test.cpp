@@ -44,35 +44,6 @@ TEST(Signals, EveryOrderOfTwoSignalsStopsTheForces) {
   }
 }
 
-TEST(Signals, OnlyRequestsAreAsked) {
-  const auto quit = [] {
-    const StopListener listener;
-    raise(SIGQUIT);
-  };
-  EXPECT_EXIT(run(quit), KilledBySignal(SIGQUIT), "^f$");
-}
-
-TEST(Signals, AnsweredByNobodyASignalEndsTheProgramAgain) {
-  const auto listen_no_longer = [] {
-    { const StopListener listener; }
-    raise(SIGTERM);
-  };
-  EXPECT_EXIT(run(listen_no_longer), KilledBySignal(SIGTERM), "^f$");
-}
-
-TEST(Signals, ANewListenerForgetsTheRequestBefore) {
-  const auto listen_again = [] {
-    {
-      const StopListener listener;
-      raise(SIGINT);
-    }
-    trace(stop_requested() == SIGINT ? '1' : '?');
-    const StopListener listener;
-    trace(stop_requested() == 0 ? '2' : '?');
-  };
-  EXPECT_EXIT(run(listen_again), ExitedWithCode(0), "^12$");
-}
-
 TEST(Signals, AHandlerFromBeforeIsCalledAfterTheForcesStop) {
   const auto install_twice = [] {
     signal(SIGTERM, [](int) { trace('h'); });

@@ -40,12 +40,5 @@ TEST(WholeFile, SaysWhyAFileCannotBeRead) {
   EXPECT_TRUE(test::has_parts(message(path), {path, "permission", "; "}));
 }
 
-TEST(WholeFile, RefusesAFileBeyondItsLimit) {
-  const test::TemporaryFolder folder;
-  const std::string path = folder.with_file("bytes", "12345");
-  EXPECT_TRUE(read_plain_file(path, "a scene", "", 5).ok());
-  EXPECT_FALSE(read_plain_file(path, "a scene", "", 4).ok());
-}
-
 }  // namespace
 }  // namespace palpate

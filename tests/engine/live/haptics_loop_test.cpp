@@ -158,17 +158,5 @@ TEST(HapticsLoop, RunsBesideABusySlowSide) {
   loop.stop();  // a second call has no effect
 }
 
-TEST(HapticsLoop, IsStoppedByItsEnd) {
-  PathDevice device(test::held_5mm);
-  LoopSettings settings;
-  settings.realtime = false;
-  {
-    HapticsLoop loop(device, settings);
-    ASSERT_TRUE(loop.start().ok());
-  }
-  EXPECT_EQ(device.force_N(), 0.0);
-  EXPECT_GT(device.writes(), 0);
-}
-
 }  // namespace
 }  // namespace palpate

@@ -170,15 +170,6 @@ TEST(LiveTick, ANewSetFadesInAndTheOldOneIsRetired) {
   EXPECT_TRUE(old.expired());
 }
 
-TEST(LiveTick, ControlsOfAnotherSetDoNotCount) {
-  Held held;
-  held.rig.publish(1, {spring(300.0), spring(900.0)});
-  EXPECT_EQ(held.rig.run(1000, {7, 1}).selected, 0u);
-  EXPECT_EQ(held.rig.run(10, {1, 5}).selected, 0u) << "there is no sixth model";
-  EXPECT_EQ(held.rig.run(10, {1, 1}).selected, 1u);
-  EXPECT_EQ(held.rig.run(10, {7, 0}).selected, 1u) << "the choice stays";
-}
-
 // The state of the material's memory is kept when models are exchanged in mid-press.
 TEST(LiveTick, ANewSetGoesOnWithTheFiltersOfTheOld) {
   const auto run = [](bool change) {
@@ -229,15 +220,6 @@ TEST(LiveTick, WithoutModelsShowsTheToolAndNoForce) {
   held.rig.publish(1, {});
   EXPECT_EQ(held.rig.run(5, controls).models_id, 1u);
   EXPECT_EQ(held.device.force_N(), 0.0);
-}
-
-TEST(LiveTick, TimesEachModel) {
-  Held held;
-  held.rig.publish(1, {spring(300.0), spring(400.0)});
-  const LoopSnapshot& snapshot = held.rig.run(10);
-  EXPECT_GT(snapshot.evaluation_ns[0], 0.0F);
-  EXPECT_GT(snapshot.evaluation_ns[1], 0.0F);
-  EXPECT_EQ(snapshot.evaluation_ns[2], 0.0F);
 }
 
 class CountingReference final : public ReferenceForce {

@@ -23,20 +23,5 @@ TEST(RowRules, AllowFivePercentBeyondTheRangeOfRates) {
   }
 }
 
-TEST(RowRules, NameTheColumnAtFault) {
-  const auto role = [](const RecordingRow& row) {
-    RowRules rules;
-    const auto fault = rules.check(row);
-    return fault ? fault->role : ColumnRole::kIgnored;
-  };
-  EXPECT_EQ(role({0, 0, 0, 0, 0}), ColumnRole::kIgnored);
-  EXPECT_EQ(role({0, 1.0, -1e6, 0, 0}), ColumnRole::kIgnored);
-  EXPECT_EQ(role({HUGE_VAL, 0, 0, 0, 0}), ColumnRole::kTime);
-  EXPECT_EQ(role({0, -1.01, 0, 0, 0}), ColumnRole::kPosition);
-  EXPECT_EQ(role({0, 0, 1.01e6, 0, 0}), ColumnRole::kForce);
-  EXPECT_EQ(role({0, 0, 0, NAN, 0}), ColumnRole::kVelocity);
-  EXPECT_EQ(role({0, 0, 0, 0, -HUGE_VAL}), ColumnRole::kAcceleration);
-}
-
 }  // namespace
 }  // namespace palpate

@@ -67,20 +67,6 @@ TEST(Recording, AcceptsCommentsBeforeTheHeaderAndBlankLinesAtTheEnd) {
   expect_good_rows(accepted(test::good_recording() + "\n \t\r\n\n"));
 }
 
-TEST(Recording, AcceptsALineOf64KiB) {
-  const std::string longest = "#" + std::string(kMaximumLineBytes - 1, ' ');
-  for (const std::string start : {"", "\xEF\xBB\xBF"})
-    expect_good_rows(accepted(start + longest + "\r\n" + test::good_recording()));
-}
-
-TEST(Recording, ReportsAStreamThatFails) {
-  // A folder can be opened as a file, but not be read.
-  std::ifstream folder("/");
-  const auto recording = read_recording(folder, "x.csv");
-  ASSERT_FALSE(recording.ok());
-  EXPECT_TRUE(test::has_parts(recording.error().message, {"x.csv: ", "Is a"}));
-}
-
 TEST(Recording, AcceptsColumnsInAnyOrderAndIgnoresFurtherOnes) {
   std::string text = "note,acceleration_m_per_s2,force_N,\xC2\xB5,velocity_m_per_s,time_s,position_m,\n";
   for (int i = 0; i < 10; ++i) {
@@ -106,18 +92,6 @@ TEST(Recording, AcceptsBlanksPlusSignsAndExponents) {
   EXPECT_EQ(recording.rows[9].time_s, 0.009);
   EXPECT_EQ(recording.rows[9].position_m, -0.5);
   EXPECT_EQ(recording.rows[9].force_N, 10.0);
-}
-
-TEST(Recording, AcceptsALongSlowRecordingWithAGap) {
-  std::string text = test::good_header();
-  for (int i = 0; i < 2000; ++i) {
-    const int tenths = i < 1000 ? i : i + 600;  // 10 Hz; nothing for a minute
-    text += std::to_string(tenths / 10) + "." + std::to_string(tenths % 10) + ",0.001,0.5\n";
-  }
-  const Recording recording = accepted(text);
-  ASSERT_EQ(recording.rows.size(), 2000u);
-  EXPECT_EQ(recording.rows[999].time_s, 99.9);
-  EXPECT_EQ(recording.rows[1000].time_s, 160.0);
 }
 
 // A German locale, if the machine has one, while the object lives.

@@ -73,21 +73,6 @@ TEST(Features, AClosedCycleNeverGivesBackMoreThanItTook) {
   }
 }
 
-TEST(Features, UnevenStepsOfARampGiveTheSameAsEvenOnes) {
-  const double tau_s = 0.3;
-  FeatureFilter filter({lowpass(tau_s), spectrum({tau_s}, {2e-3, {0.5, 0.0, 0.0, 0.0}})});
-  feed(filter, 0.0, 0.0);
-  double t = 0.0;
-  for (int i = 0; i < 400; ++i) {
-    t += 1e-3 * (1.0 + 0.9 * std::sin(1.7 * i));
-    feed(filter, t, 0.01 * t);
-  }
-  const double rise = 0.01 * (1.0 - std::exp(-t / tau_s));
-  EXPECT_NEAR(filter.vector().values[0], rise, 0.01 * kRounding);
-  // A linear drive curve continues linearly beyond 2 mm: 0.5 N / 2 mm x tau x rise.
-  EXPECT_NEAR(filter.vector().values[1], 250.0 * tau_s * rise, kRounding);
-}
-
 // The discretisation is exact for linear motion between samples. Here the depth
 // deviates from linear by at most a h^2 / 8 = 0.1 um at 500 Hz, and the filters forget
 // it. The tolerance of 0.1 % of each feature's range has a margin of ten.

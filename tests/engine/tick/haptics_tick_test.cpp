@@ -95,13 +95,6 @@ TEST(HapticsTick, GivesNoForceOutOfContact) {
   EXPECT_GT(outside, 500);
 }
 
-TEST(HapticsTick, ModelsOfTheSameFeaturesShareAFilter) {
-  const HapticsTick tick({}, test::example_force_models());
-  EXPECT_EQ(&tick.features_of(0), &tick.features_of(1));
-  EXPECT_EQ(&tick.features_of(0), &tick.features_of(8));
-  EXPECT_NE(&tick.features_of(0), &tick.features_of(3));
-}
-
 TEST(HapticsTick, OneModelsForceDoesNotDependOnItsNeighbours) {
   const ForceModels all = test::example_force_models();
   HapticsTick together({30e-6, 0.0}, all);

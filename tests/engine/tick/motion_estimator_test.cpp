@@ -169,12 +169,6 @@ TEST(MotionEstimator, ComesToRestWithTheTool) {
   EXPECT_NEAR(motion.position_m, 0.01, kStep_m);
 }
 
-// Time steps are those of the samples, so that jitter increases the error only slightly.
-TEST(MotionEstimator, TakesUnevenTimeSteps) {
-  const SensorSpec sensor{kStep_m, 0.0};
-  EXPECT_LT(rms_error(ours(sensor), false, 0.9), 1.25 * rms_error(ours(sensor)));
-}
-
 // From 10 Hz to 20 kHz the estimate is finite and follows a slow sine as far as the rate allows.
 TEST(MotionEstimator, WorksAtEveryRateOfTheContract) {
   for (const double rate_Hz : {10.0, 100.0, 20000.0}) {

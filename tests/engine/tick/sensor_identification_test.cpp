@@ -96,14 +96,5 @@ TEST(SensorIdentification, ColumnsWithoutNoiseGetTheFloors) {
   EXPECT_EQ(identify_sensor(nullptr, 0, {}).encoder_step_m, 0.0);
 }
 
-TEST(SensorIdentification, LooksAtTheFirstRowsOnly) {
-  Recording recording = test::example_recording(kSensorIdentificationRows + 5000, 1000.0, 30e-6);
-  const SensorSpec before = identify(recording);
-  for (std::size_t i = kSensorIdentificationRows; i < recording.rows.size(); ++i) recording.rows[i].position_m += 1e-5;
-  const SensorSpec after = identify(recording);
-  EXPECT_EQ(before.encoder_step_m, after.encoder_step_m);
-  EXPECT_EQ(before.position_noise_m, after.position_noise_m);
-}
-
 }  // namespace
 }  // namespace palpate

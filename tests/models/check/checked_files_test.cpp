@@ -58,14 +58,6 @@ TEST(Contradiction, NamesTheDifferenceOfTheForces) {
   EXPECT_FALSE(contradiction_N(strokes(1000.0), changed(strokes(1000.0), 0.0, 0.05)));
 }
 
-// With more friction the medians of loading and unloading differ, and those of both together overlap.
-TEST(Contradiction, FrictionIsNone) {
-  Recording rough = strokes(1000.0);
-  for (std::size_t i = 0; i < rough.rows.size(); ++i)
-    rough.rows[i].force_N += std::sin(4e-3 * static_cast<double>(i)) > 0.0 ? 1.0 : -1.0;
-  EXPECT_FALSE(contradiction_N(strokes(1000.0), rough));
-}
-
 TEST(Contradiction, NeedsCommonPositions) {
   EXPECT_FALSE(contradiction_N(strokes(1000.0), changed(strokes(1000.0), 5.5e-3, 2.8)));
   Recording rest = strokes(1000.0);

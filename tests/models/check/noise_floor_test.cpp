@@ -23,12 +23,6 @@ TEST(NoiseFloor, IsThatOfANormalErrorAtOneForce) {
   EXPECT_NEAR(floor.p99_error_over_jnd, 2.576 * noise_over_jnd, 0.03);
 }
 
-TEST(NoiseFloor, OutOfContactCountsNothing) {
-  Recording recording;
-  for (int i = 0; i < 100; ++i) recording.rows.push_back({1e-3 * i, -1e-3, 0.0});
-  EXPECT_EQ(noise_floor({prepare_recording(recording).get()}, JndLine{}).within_jnd, 1.0);
-}
-
 TEST(NoiseFloor, ContactCountsFromTheSurface) {
   // A spring with noise whose surface is at 1 mm; the force of the air is 0.2 N.
   Recording recording;

@@ -4,7 +4,6 @@
 
 #include <Eigen/LU>
 #include <algorithm>
-#include <cmath>
 
 #include "models/correction/methods.h"
 #include "models/model/correction.h"
@@ -17,12 +16,6 @@ namespace {
 
 using test::random_points;
 using test::smooth_sites;
-
-double rms_error(const RbfFunction& function, const Sites& truth) {
-  Eigen::VectorXd values;
-  RbfCorrection(function).evaluate_many(truth.points, values);
-  return std::sqrt((values - truth.target_N).squaredNorm() / static_cast<double>(truth.count()));
-}
 
 Result<RbfFunction> function_of(const Sites& sites) {
   auto solved = solve_direct(sites);
@@ -70,41 +63,6 @@ TEST(FitDirect, SolvesTheSaddleSystemOfEquation4) {
     }
 }
 
-TEST(FitDirect, InterpolatesWithoutSmoothing) {
-  const Sites sites = smooth_sites(4, 300, 0.0, 1);
-  for (const KernelKind kernel : kKernelKinds) {
-    const auto fitted = smoothed_fit(sites, kernel, 0.0);
-    ASSERT_TRUE(fitted.ok());
-    // The minimum smoothing is 1e-15 of the trace; its bias is below 1e-7 here.
-    EXPECT_LE(rms_error(*fitted, sites), 1e-7) << kernel_name(kernel);
-    const Eigen::MatrixXd tail = tail_matrix(tail_degree(kernel), sites.points);
-    const double size = fitted->weights.cwiseAbs().sum();
-    EXPECT_LE((tail.transpose() * fitted->weights).cwiseAbs().maxCoeff(), 1e-12 * size) << "eq. 3";
-  }
-}
-
-// The stability tests have more cases, with the cubic kernel.
-TEST(FitDirect, DegenerateDataHaveADefinedOutcome) {
-  std::vector<Sites> all = test::degenerate_sites();
-  for (const int count : {1, 2, 5, 6}) all.push_back(smooth_sites(4, count, 0.0, 1));
-  for (const KernelKind kernel : kKernelKinds) {
-    for (Sites sites : all) {
-      sites.kernel = kernel;
-      const auto fitted = function_of(sites);
-      ASSERT_TRUE(fitted.ok());
-      EXPECT_TRUE(fitted->weights.allFinite());
-      // At the sites the force is at most twice the largest target.
-      const double range = sites.target_N.cwiseAbs().maxCoeff();
-      Eigen::VectorXd values;
-      RbfCorrection(*fitted).evaluate_many(sites.points, values);
-      EXPECT_LE(values.cwiseAbs().maxCoeff(), 2.0 * range + 1e-9) << kernel_name(kernel);
-    }
-    Sites one = smooth_sites(4, 1, 0.0, 1);
-    one.kernel = kernel;
-    EXPECT_NEAR(rbf_value(*function_of(one), one.points.data()), one.target_N[0], 1e-12);
-  }
-}
-
 TEST(FitDirect, SameDataSameBits) {
   const Sites sites = smooth_sites(4, 700, 0.01, 1);
   const auto a = function_of(sites);
@@ -128,30 +86,6 @@ TEST(FitDirect, RefusesTooManySitesAndCanBeInterrupted) {
     const auto stopped = solve_direct(sites, {[&](double f) { return f < fraction; }});
     ASSERT_FALSE(stopped.ok());
     EXPECT_EQ(stopped.error().message, "interrupted") << fraction;
-  }
-}
-
-// The condition number in the 1-norm of the factorised matrix, from its inverse.
-TEST(FitDirect, TellsRankAndConditionNumber) {
-  for (const KernelKind kind : kKernelKinds) {
-    Sites sites = smooth_sites(3, 80, 0.0, 3);
-    sites.kernel = kind;
-    sites.smoothing = 1e-3;
-    const ProjectedKernel projected(kind, sites.points, sites.row_scale);
-    Eigen::MatrixXd matrix = projected.matrix(projected.mean_eigenvalue(), sites.smoothing);
-    matrix.triangularView<Eigen::StrictlyUpper>() = matrix.transpose();
-    const auto norm = [](const Eigen::MatrixXd& a) { return a.cwiseAbs().colwise().sum().maxCoeff(); };
-    const double expected = norm(matrix) * norm(matrix.inverse());
-    const auto solved = solve_direct(sites);
-    ASSERT_TRUE(solved.ok());
-    EXPECT_EQ(solved->rank, 80);
-    // The estimate is a lower bound, rarely below a third (Higham 1988).
-    EXPECT_LE(solved->condition_number, expected * (1.0 + 1e-6)) << kernel_name(kind);
-    EXPECT_GE(solved->condition_number, expected / 3.0) << kernel_name(kind);
-    const auto fitted = fit_correction(kDirectMethod, {sites, sites.target_N});
-    ASSERT_TRUE(fitted.ok());
-    EXPECT_EQ(fitted->rank, solved->rank);
-    EXPECT_EQ(fitted->condition_number, solved->condition_number);
   }
 }
 

@@ -68,15 +68,5 @@ TEST(FitGreedy, MoreCandidatesFitBetterAndAllFitBetterThanRandomCentres) {
   EXPECT_LT(all, few);
 }
 
-// In one dimension a hundred cubic columns are almost linearly dependent. Then
-// |c|^2 - |Q^T c|^2 has no correct digits, and selection by it would be random.
-TEST(FitGreedy, KeepsChoosingWellWhenColumnsAreNearlyDependent) {
-  const Sites sites = smooth_sites(1, 400, 0.0, 3);
-  const auto fitted = fit_greedy(sites, {.centres = 60, .candidates = 0});
-  ASSERT_TRUE(fitted.ok());
-  EXPECT_LE(residual_rms(sites, *fitted), 1e-4);  // of the JND
-  EXPECT_TRUE(fitted->weights.allFinite());
-}
-
 }  // namespace
 }  // namespace palpate

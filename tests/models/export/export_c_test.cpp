@@ -172,19 +172,6 @@ TEST(ExportC, GivesTheLibrarysForcesDuringAndAfterBadSamples) {
   }
 }
 
-TEST(ExportC, StepsGiveTheSameAsTimes) {
-  const Recording& recording = recordings().front();
-  const ModelData data = test::example_models().front();
-  const CompiledModel<double> by_time(data, positions_of(recording));
-  const CompiledModel<double> by_step(data, positions_of(recording));
-  double before_s = recording.rows.front().time_s;
-  for (const RecordingRow& row : recording.rows) {
-    const double expected_N = by_time.force(row.time_s, row.position_m);
-    EXPECT_NEAR(by_step.force_after(row.time_s - before_s, row.position_m), expected_N, 1e-9);
-    before_s = row.time_s;
-  }
-}
-
 TEST(ExportC, ASampleThatIsNoneChangesNothingAndAResetBeginsAgain) {
   const Recording& recording = recordings().front();
   const ModelData data = test::example_models().front();

@@ -83,20 +83,6 @@ TEST(SurfaceEstimate, InventsNothing) {
   }
 }
 
-// A surface that is still recovering is touched late, so only touches after a rest count.
-TEST(SurfaceEstimate, OnlyTouchesAtRestCount) {
-  // A single touch does not determine a drift.
-  EXPECT_TRUE(std::isinf(estimate_surface(spring_presses(3, 0.5)).offset_drift_error_m));
-  EXPECT_TRUE(std::isfinite(estimate_surface(spring_presses(3, kRestBeforeTouch_s)).offset_drift_error_m));
-}
-
-// The recording begins 1 mm outside of the surface, nearer than the outer half of the free air.
-TEST(SurfaceEstimate, FindsTheSurfaceInARecordingThatBeginsNearIt) {
-  Recording recording = moved(spring_presses(3, 1.0), 0.3e-3);
-  recording.rows.erase(recording.rows.begin(), recording.rows.begin() + 100);
-  EXPECT_NEAR(estimate_surface(recording).offset_m, 0.3e-3, 0.02e-3);
-}
-
 TEST(SurfaceEstimate, MeasuresASurfaceThatMoves) {
   const SurfaceEstimate still = estimate_surface(spring_presses(3, 6.0));
   EXPECT_EQ(still.offset_drift_m, 0.0);

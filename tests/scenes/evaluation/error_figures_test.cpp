@@ -55,11 +55,5 @@ TEST(ErrorFigures, AddUp) {
   EXPECT_NEAR(bins[1].jnd_N, 0.5, kRounding);
 }
 
-TEST(ErrorFigures, HaveNoMoreBinsThanTheMost) {
-  ErrorFigures figures;
-  figures.add(0.0, 1e9, false, {0.01, 0.0});
-  EXPECT_EQ(figures.summary({0.01, 0.0}).bins.size(), kMaximumForceBins);
-}
-
 }  // namespace
 }  // namespace palpate

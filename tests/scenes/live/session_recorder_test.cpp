@@ -170,33 +170,6 @@ TEST(SessionRecorder, RecordsOneFileAtATime) {
   EXPECT_EQ(folder.entries(), std::vector<std::string>{"a.csv"});
 }
 
-// The loop still puts samples of the first recording into the ring after it was stopped.
-TEST(SessionRecorder, TheSecondRecordingHasNoSamplesOfTheFirst) {
-  const TemporaryFolder folder;
-  PathDevice device([](double time_s) { return 1e-3 * time_s; });
-  Rig rig(device);
-  ASSERT_TRUE(rig.start(folder.file("a.csv"), ReferenceKind::truth).ok());
-  double begins_s = 0.0;
-  FakePacer pacer([&](int wait) -> std::int64_t {
-    if (wait == 100) {
-      const Notice first = rig.finish();
-      EXPECT_FALSE(first.problem) << first.text;
-    }
-    if (wait == 200) {
-      begins_s = rig.loop.newest().tick.time_s;
-      EXPECT_TRUE(rig.start(folder.file("b.csv"), ReferenceKind::truth).ok());
-    }
-    if (wait == 300) rig.loop.request_stop();
-    return 0;
-  });
-  rig.loop.run(pacer);
-  EXPECT_FALSE(rig.finish().problem);
-  const Recording second = read_recording(folder.file("b.csv")).value();
-  EXPECT_GT(begins_s, 0.0);
-  EXPECT_GE(second.rows.front().position_m, 1e-3 * begins_s) << "a sample of the first recording";
-  EXPECT_NEAR(static_cast<double>(second.rows.size()), 100.0, 2.0);
-}
-
 TEST(SessionRecorder, ReportsAMissingFolder) {
   const TemporaryFolder folder;
   std::filesystem::create_directory(folder.file("sub"));

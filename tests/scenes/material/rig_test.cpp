@@ -107,82 +107,6 @@ TEST(Rig, EveryCompilerGivesTheSameRecording) {
   EXPECT_EQ(hash_of("silicone"), 15434185132153357557u);
 }
 
-TEST(Rig, ALongerRecordingBeginsWithTheShorterOne) {
-  const Recording brief = made("silicone", 3, 4.0).recording;
-  const Recording lengthy = made("silicone", 3, 8.0).recording;
-  ASSERT_LT(brief.rows.size(), lengthy.rows.size());
-  EXPECT_EQ(std::memcmp(brief.rows.data(), lengthy.rows.data(), brief.rows.size() * sizeof(RecordingRow)), 0);
-}
-
-// Rows of 100 Hz. 300 Hz does not divide the 20 kHz grid, so that the time of a row rounds to 1e-11 grid steps.
-TEST(Rig, RatesShareMotionAndForce) {
-  const RigRecording base = made("maxwell", 5, 3.0, 100.0);
-  for (const std::size_t every : {3U, 5U, 10U, 20U}) {
-    const RigRecording other = made("maxwell", 5, 3.0, 100.0 * static_cast<double>(every));
-    for (std::size_t i = 0; i < base.truth.size(); ++i) {
-      ASSERT_NEAR(other.truth[every * i].force_N, base.truth[i].force_N, 1e-9);
-      ASSERT_NEAR(other.truth[every * i].position_m, base.truth[i].position_m, 1e-12);
-      ASSERT_NEAR(other.recording.rows[every * i].time_s, base.recording.rows[i].time_s, 1e-12);
-    }
-  }
-}
-
-TEST(Rig, EncoderReadsTheNearestThirtyMicrometres) {
-  const RigRecording rig = made("silicone", 1, 10.0);
-  for (std::size_t i = 0; i < rig.truth.size(); ++i) {
-    const double count = rig.recording.rows[i].position_m / 30e-6;
-    ASSERT_NEAR(count, std::round(count), 1e-9);
-    ASSERT_LE(std::abs(rig.recording.rows[i].position_m - rig.truth[i].position_m), 15.001e-6);
-  }
-}
-
-TEST(Rig, ForceNoiseIsAsStatedAndInTwelveBitSteps) {
-  const RigRecording rig = made("silicone", 1);
-  const double step_N = 20.0 / 4096.0;
-  const Moments error = moments(rig.truth.size(), [&](std::size_t i) {
-    const double count = rig.recording.rows[i].force_N / step_N;
-    EXPECT_NEAR(count, std::round(count), 1e-9);
-    return rig.recording.rows[i].force_N - rig.truth[i].force_N;
-  });
-  // The variances of noise and rounding add. The standard errors are 2.5e-5 and 1.8e-5 N.
-  EXPECT_NEAR(error.mean(), 0.0, 1e-4);
-  EXPECT_NEAR(error.deviation(), std::hypot(0.005, step_N / std::sqrt(12.0)), 1e-4);
-}
-
-TEST(Rig, ForceCellClipsAtItsRange) {
-  RigSettings settings;
-  settings.seconds = 10.0;
-  settings.hand = {.strongest_press_N = 20.0};  // beyond the 10 N of the sensor
-  const RigRecording rig = test::must(record(settings));
-  double strongest_N = 0.0;
-  for (const RecordingRow& row : rig.recording.rows) strongest_N = std::max(strongest_N, row.force_N);
-  EXPECT_DOUBLE_EQ(strongest_N, 10.0 * 2047.0 / 2048.0);
-}
-
-TEST(Rig, AccelerometerHasWhiteNoiseAndASlowBias) {
-  const RigRecording rig = made("silicone", 1, 200.0);
-  const auto error = [&](std::size_t i) {
-    return rig.recording.rows[i].acceleration_m_per_s2 - rig.truth[i].acceleration_m_per_s2;
-  };
-  const std::size_t count = rig.truth.size();
-  const double step = 80.0 / 4096.0;
-  for (const RecordingRow& row : rig.recording.rows) {
-    ASSERT_EQ(row.acceleration_m_per_s2, std::round(row.acceleration_m_per_s2 / step) * step);
-  }
-  // Differences of adjacent samples have twice the white variance and no bias.
-  // The standard error is 0.2 %.
-  const Moments steps = moments(count - 1, [&](std::size_t i) { return error(i + 1) - error(i); });
-  EXPECT_NEAR(steps.deviation() / std::sqrt(2.0), 0.07, 0.001);
-  // In 200 s the bias has about ten independent values of 0.1, so its mean and
-  // spread are accurate to a factor of two.
-  const Moments bias = moments(count / 1000, [&](std::size_t second) {
-    return moments(1000, [&](std::size_t i) { return error(1000 * second + i); }).mean();
-  });
-  EXPECT_LT(std::abs(bias.mean()), 0.15);
-  EXPECT_GT(bias.deviation(), 0.03);
-  EXPECT_LT(bias.deviation(), 0.2);
-}
-
 TEST(Rig, RefusesInvalidSettings) {
   RigSettings unknown;
   unknown.material = "Silicone";
@@ -205,14 +129,6 @@ TEST(Rig, RefusesInvalidSettings) {
     settings.*setting = value;
     EXPECT_TRUE(test::has_parts(record(settings), parts));
   }
-}
-
-TEST(Rig, DescribesHowTheRecordingWasMade) {
-  const RigSettings settings;
-  const std::vector<std::string> lines = describe_recording(settings, find_material("silicone").value(), 41499);
-  ASSERT_EQ(lines.size(), 4u);
-  EXPECT_TRUE(test::has_parts(lines[0], {"palpate synth", "silicone", "seed 1", "41499 rows", "1000 Hz"}));
-  EXPECT_EQ(lines[1], "true relaxation times: continuous, 0.001 s to 30 s");
 }
 
 TEST(Rig, RecordsTheSensorsAndCanBeInterrupted) {

@@ -100,11 +100,6 @@ TEST(ReportRecordings, RefusesUnusableRecordings) {
   EXPECT_TRUE(test::has_parts(split({noisy("a")}, {air}), {"air: ", "position_m > 0", "; "}));
 }
 
-TEST(Leakage, TheSameMotionWithItsOwnNoiseIsNoLeak) {
-  EXPECT_EQ(shared_stretch(noisy("train"), noisy("test")).rows, 0u);
-  EXPECT_TRUE(split({noisy("train")}, {noisy("test")}).ok());
-}
-
 TEST(Leakage, ACopyUnderAnotherNameIsRefusedByName) {
   const Recording train = noisy("train");
   Recording copy = train;
@@ -129,15 +124,6 @@ TEST(Leakage, AStretchOfTheTrainingInATestIsFoundWhereverItLies) {
   EXPECT_EQ(stretch.first_row, 777u);
   EXPECT_EQ(stretch.trained_row, 331u);
   EXPECT_TRUE(palpate::test::has_parts(split({train}, {test}), {"100 rows from 0.777 s", "0.331 s"}));
-}
-
-TEST(Leakage, SilenceIsNoContent) {
-  Recording train = noisy("train");
-  Recording test = noisy("test");
-  for (Recording* recording : {&train, &test}) {
-    for (std::size_t i = 0; i < 500; ++i) recording->rows[i].force_N = 0.0;
-  }
-  EXPECT_EQ(shared_stretch(train, test).rows, 0u);
 }
 
 }  // namespace

@@ -60,9 +60,5 @@ TEST_F(UserFolders, FollowTheEnvironmentElseTheHome) {
   EXPECT_EQ(*data_folder(), folder_.file(".local/share/palpate"));
 }
 
-TEST_F(UserFolders, NameTheMissingVariables) {
-  EXPECT_TRUE(test::has_parts(data_folder(), {"XDG_DATA_HOME", "HOME", "folder"}));
-}
-
 }  // namespace
 }  // namespace palpate

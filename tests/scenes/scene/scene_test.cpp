@@ -79,17 +79,6 @@ TEST(SceneReader, ReadsEveryField) {
   EXPECT_EQ(scene.strongest_press_N, 5.0) << "may be left out";
 }
 
-TEST(SceneReader, TakesAStrongestPressAndTheJndFromAFile) {
-  const test::TemporaryFolder folder;
-  folder.with_file("own.json", R"({"format": "palpate-jnd", "version": 1, "offset_N": 0.04, "weber_fraction": 0.12})");
-  const std::string line = R"("jnd": {"offset_N": 0.1, "weber_fraction": 0})";
-  const auto scene = test::must(parse_scene(
-      test::replaced(kGood, line, R"("jnd_file": "own.json", "strongest_press_N": 0.9)"), folder.file("x.json")));
-  EXPECT_EQ(scene.jnd.offset_N, 0.04);
-  EXPECT_EQ(scene.jnd.weber_fraction, 0.12);
-  EXPECT_EQ(scene.strongest_press_N, 0.9);
-}
-
 TEST(SceneReader, RefusesWithPlaceFoundAndExpected) {
   test::expect_messages(
       kGood, complaint,
@@ -113,18 +102,6 @@ TEST(SceneReader, RefusesWithPlaceFoundAndExpected) {
        {"\"#56B4E9\"}", R"("#56B4E9"}, "finish": "wood")", {"x.json:11:46:", "finish", "wood", "silicone"}},
        {R"("title")", R"("name": "x", "title")", {"x.json:2:11:", "name: found an unknown field", "title"}},
        {"#56B4E9\"", R"(#56B4E9", "tool": "#000000")", {"x.json:11:43:", "colours.tool", "block"}}});
-}
-
-TEST(SceneReader, LimitsTheNumberOfFeatures) {
-  Json document = Json::parse(kGood);
-  for (int i = 2; i < 8; ++i) {
-    document["features"].push_back({{"kind", "lowpass_velocity"}, {"relaxation_time_s", i}});
-  }
-  EXPECT_TRUE(parse_scene(document.dump(), "x.json").ok());
-  document["features"].push_back({{"kind", "velocity"}});
-  EXPECT_TRUE(test::has_parts(parse_scene(document.dump(), "x.json"), {"list of 9", "1 to 8"}));
-  document["features"] = Json::array();
-  EXPECT_FALSE(parse_scene(document.dump(), "x.json").ok());
 }
 
 // Every field in turn has a wrong type or is missing: it is refused without a crash.

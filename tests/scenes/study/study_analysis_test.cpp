@@ -30,11 +30,6 @@ std::vector<AnswerCell> expected_answers(std::initializer_list<PsychometricFunct
   return cells;
 }
 
-TEST(Psychometrics, NormalDistributionMatchesPublishedValues) {
-  EXPECT_NEAR(normal_cdf(1.0), 0.8413447460685429, 1e-15);
-  EXPECT_NEAR(normal_cdf(kCriterionQuantile), kJndCriterion, 1e-15);
-}
-
 TEST(Psychometrics, FindsTheFunctionsThatMadeTheAnswers) {
   for (const double lapse : {0.0, 0.02, 0.05}) {
     const auto cells = expected_answers({{2.0, -0.3, lapse}, {5.0, -0.3, lapse}, {12.0, -0.3, lapse}}, 5.0);
@@ -49,12 +44,6 @@ TEST(Psychometrics, FindsTheFunctionsThatMadeTheAnswers) {
   }
 }
 
-TEST(Psychometrics, JndIsHalfTheDistanceBetweenTheCriterionPoints) {
-  const PsychometricFunction function{5.0, 0.0, 0.0};
-  EXPECT_NEAR(function.at(function.jnd(), true), kJndCriterion, 1e-12);
-  EXPECT_NEAR(function.at(-function.jnd(), true), 1.0 - kJndCriterion, 1e-12);
-}
-
 TEST(Psychometrics, MarksSlopesThatAnswersDoNotBound) {
   // All correct, guesses, something between, no answers.
   std::vector<AnswerCell> cells = expected_answers({{5.0, 0.0, 0.0}}, 5.0);
@@ -67,7 +56,6 @@ TEST(Psychometrics, MarksSlopesThatAnswersDoNotBound) {
   for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(functions[i].determined, i == 0) << i;
 }
 
-using test::discrimination_header;
 using test::example_strokes;
 
 // A session whose answers have exactly the expected frequencies, with `repetitions` of
@@ -169,26 +157,6 @@ TEST(StudyAnalysis, FindsTheJndsOfKnownSubjects) {
   }
 }
 
-TEST(StudyAnalysis, AcceptsFilesThatEndEarly) {
-  const StudyHeader header{"S01"};
-  const std::vector<StudyRecord> records = simulated_answers(header, {}, 1);
-  for (const std::size_t kept : {9u, 12u, 60u}) {
-    const StudyData cut{header, {records.begin(), records.begin() + static_cast<std::ptrdiff_t>(kept)}};
-    const auto analysis = test::must(analyse_study({cut}, false));
-    EXPECT_TRUE(std::any_of(analysis.mean.references.begin(), analysis.mean.references.end(),
-                            [](const ReferenceJnd& one) { return one.rendered_N > 0.0; }));
-  }
-}
-
-TEST(JndLineFit, FitsByLeastSquaresAndShiftsBelowAllPoints) {
-  const auto lines =
-      test::must(fit_jnd_lines({{0.0, 0.1, 0.0, "study"}, {1.0, 0.3, 0.0, "study"}, {2.0, 0.2, 0.0, "study"}}));
-  EXPECT_NEAR(lines.fitted.weber_fraction, 0.05, 1e-12);
-  EXPECT_NEAR(lines.fitted.offset_N, 0.15, 1e-12);
-  EXPECT_NEAR(lines.conservative.weber_fraction, 0.05, 1e-12);
-  EXPECT_NEAR(lines.conservative.offset_N, 0.1, 1e-12);
-}
-
 TEST(JndLineFit, RefusesDecreasingAndNegativeLines) {
   EXPECT_FALSE(fit_jnd_lines({}).ok());
   EXPECT_FALSE(fit_jnd_lines({{1.0, 0.1, 0.0, "study"}, {1.0, 0.2, 0.0, "study"}}).ok());
@@ -258,71 +226,6 @@ TEST(Discrimination, ComparesThePredictionWithTheAnswers) {
   expect(70, above, few);
   expect(97, above, "consistent.");
   EXPECT_EQ(discrimination_verdict({"S01", 0, 0, 3}, strokes), above + " No usable answers yet.");
-}
-
-TEST(Discrimination, AnalysesEachSubjectAndAllTogether) {
-  StudyData one{discrimination_header(0.9), answers(60, 100)};
-  StudyData two = one;
-  two.header.subject = "S02";
-  two.records = answers(80, 100);
-  const auto results = test::must(analyse_discrimination({one, two}));
-  EXPECT_EQ(results.back().correct, 140u);
-  EXPECT_EQ(results.back().trials, 200u);
-  const std::string table = discrimination_table(results, *one.header.strokes);
-  EXPECT_TRUE(test::has_parts(table, {"\nS02,100,80,0,0.8000,0.7112,0.8666,"}));
-  one.records.clear();
-  EXPECT_TRUE(test::has_parts(analyse_discrimination({one}), {"S01", "leave the file out"}));
-}
-
-// The share of correct answers of a subject with the JND line `jnd`, averaged over `sessions`.
-double simulated_share(double stroke_share, const JndLine& jnd, int sessions) {
-  const auto strokes = example_strokes(stroke_share);
-  double right = 0.0;
-  for (int i = 0; i < sessions; ++i) {
-    const std::string code = "S" + std::to_string(i + 1);
-    const auto records = simulated_answers({code, strokes}, {jnd, 0.0, 0.0}, static_cast<std::uint64_t>(i) + 1);
-    right += correct_share(discrimination_of(code, records, *strokes)).share / sessions;
-  }
-  return right;
-}
-
-// Three standard deviations of 4,000 answers are 0.024 at most.
-TEST(Discrimination, SimulatedSubjectsHaveTheirShareCorrect) {
-  const JndLine jnd{0.1, 0.0};
-  EXPECT_NEAR(simulated_share(1.0, jnd, 40), 0.5, 0.024) << "the same stroke twice";
-  // The largest unlimited force is 2 N, and the noise does not depend on force.
-  EXPECT_NEAR(simulated_share(1.0 - 0.1 / 2.0, jnd, 40), 0.75, 0.024) << "one JND there";
-  EXPECT_NEAR(simulated_share(1.0 + 0.1 / 2.0, jnd, 40), 0.75, 0.024) << "the larger one";
-  EXPECT_GT(simulated_share(0.5, jnd, 5), 0.99) << "grossly different";
-}
-
-double share_of_second(const SubjectTraits& traits, double first_N, double second_N) {
-  RandomStream random(3, 31);
-  int second = 0;
-  for (int i = 0; i < 20000; ++i) second += second_feels_larger(traits, first_N, second_N, random) ? 1 : 0;
-  return second / 20000.0;
-}
-
-// Three standard deviations of 20,000 draws are 0.011 at most.
-TEST(SimulatedSubject, DiscriminatesForcesByItsJnd) {
-  const SubjectTraits traits{{0.065, 0.0633}, 0.0, 0.0};
-  for (const double reference_N : {0.3, 2.5}) {
-    EXPECT_NEAR(share_of_second(traits, reference_N, reference_N), 0.5, 0.011);
-    // Slightly less than 0.75, because the larger force has larger noise.
-    EXPECT_NEAR(share_of_second(traits, reference_N, reference_N + traits.jnd.at(reference_N)), 0.75, 0.017);
-  }
-}
-
-TEST(SimulatedSubject, HasBiasAndLapses) {
-  EXPECT_NEAR(share_of_second({{0.1, 0.0}, 1.0, 0.0}, 1.0, 1.0), 0.75, 0.011) << "one JND for the second";
-  EXPECT_NEAR(share_of_second({{0.01, 0.0}, 0.0, 0.05}, 1.0, 2.0), 0.95, 0.011);
-}
-
-TEST(SimulatedSubject, GivesAllAnswersOfAPlanAndRepeatsThem) {
-  const auto one = simulated_answers({"S01"}, {}, 7);
-  EXPECT_EQ(one.size(), 328u);
-  EXPECT_EQ(one, simulated_answers({"S01"}, {}, 7));
-  EXPECT_NE(one, simulated_answers({"S01"}, {}, 8));
 }
 
 }  // namespace

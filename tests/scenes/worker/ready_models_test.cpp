@@ -6,7 +6,6 @@
 
 #include "scenes/worker/model_request.h"
 #include "scenes/worker/model_worker.h"
-#include "tests/support/example_model.h"
 #include "tests/support/message_parts.h"
 #include "tests/support/temporary_folder.h"
 
