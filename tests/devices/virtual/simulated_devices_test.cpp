@@ -61,17 +61,6 @@ TEST(HandDevice, IsPushedBackByTheForce) {
       << "where nothing pushes back, only its overshoot is deeper";
 }
 
-TEST(HandDevice, GivesOneSampleATimeAndSitsOutAStall) {
-  HandDevice device;
-  explore(device, 500.0, 2000);
-  DeviceSample sample;
-  EXPECT_FALSE(device.read(1.999, sample)) << "no time has passed";
-  ASSERT_TRUE(device.read(2.0, sample));
-  const double before_m = sample.tool.position_m;
-  ASSERT_TRUE(device.read(60.0, sample));
-  EXPECT_LT(std::abs(sample.tool.position_m - before_m), 0.02) << "20 ms at no more than 1 m/s";
-}
-
 // The mouse as a tool, which yields to the force.
 
 // Runs `ticks` ticks from `from_s` on and returns the last sample.
@@ -252,34 +241,6 @@ TEST(ReplayDevice, MovesTheSurfaceAndRestarts) {
     EXPECT_EQ(sample.measured_N, recording.rows[row].force_N);
   }
   EXPECT_EQ(device.surface_offset_m(), 0.25e-3);
-}
-
-TEST(ReplayDevice, PlaysFasterAndSlower) {
-  ReplayDevice device(ramp(10000, 1000.0));
-  Player player{device};
-  player.play(10);
-  device.set_speed(4.0);
-  EXPECT_NEAR(static_cast<double>(player.play(100).size()), 400.0, 1.0);
-  device.set_speed(0.25);
-  EXPECT_NEAR(static_cast<double>(player.play(100).size()), 25.0, 1.0);
-  device.set_speed(std::nan(""));
-  EXPECT_EQ(device.speed(), 0.25);
-  device.set_speed(1e9);
-  EXPECT_EQ(device.speed(), kFastestReplay);
-}
-
-// 20 kHz at ten times the speed is 200 rows a tick: it falls behind, but omits no row.
-TEST(ReplayDevice, WaitsForTheLoopWhenItIsTooFast) {
-  ReplayDevice device(ramp(20000, 20000.0));
-  device.set_speed(kFastestReplay);
-  Player player{device};
-  const std::vector<DeviceSample> samples = player.play(100);
-  EXPECT_LE(samples.size(), 100u * kMaxSamplesPerTick);
-  EXPECT_GT(samples.size(), 90u * kMaxSamplesPerTick);
-  for (std::size_t i = 0; i < samples.size(); ++i) {
-    ASSERT_EQ(samples[i].measured_N, 1e-3 * static_cast<double>(i));
-  }
-  EXPECT_LT(device.playhead_s(), 0.2);
 }
 
 TEST(ReplayDevice, SeeksAlsoWhilePaused) {

@@ -212,18 +212,6 @@ using test::TemporaryFolder;
 
 const std::string kMegabyte(std::size_t{1} << 20, 'x');
 
-TEST(AtomicFile, HoldsWhatWasWritten) {
-  const TemporaryFolder folder;
-  auto file = AtomicFile::create(folder.file("out"), false);
-  ASSERT_TRUE(file.ok());
-  file->write("one,");
-  file->write("two\n");
-  EXPECT_FALSE(std::filesystem::exists(folder.file("out")));
-  ASSERT_TRUE(file->commit().ok());
-  EXPECT_EQ(read_text(folder.file("out")), "one,two\n");
-  EXPECT_EQ(folder.entries(), std::vector<std::string>{"out"});
-}
-
 TEST(AtomicFile, AFileThatIsReplacedKeepsItsPermissions) {
   const TemporaryFolder folder;
   const std::string path = folder.with_file("out", "secret");

@@ -89,16 +89,6 @@ TEST(Recording, AcceptsColumnsInAnyOrderAndIgnoresFurtherOnes) {
   EXPECT_EQ(row.acceleration_m_per_s2, -3.0);
 }
 
-TEST(Recording, AcceptsBlanksPlusSignsAndExponents) {
-  std::string text = test::good_header();
-  for (int i = 0; i < 10; ++i) text += " +" + std::to_string(i) + "e-3\t, -.5 ,\t1.E1 \n";
-  const Recording recording = accepted(text);
-  ASSERT_EQ(recording.rows.size(), 10u);
-  EXPECT_EQ(recording.rows[9].time_s, 0.009);
-  EXPECT_EQ(recording.rows[9].position_m, -0.5);
-  EXPECT_EQ(recording.rows[9].force_N, 10.0);
-}
-
 // A German locale, if the machine has one, while the object lives.
 class GermanNumbers {
  public:

@@ -34,18 +34,6 @@ TEST(Features, FreeAirForgetsStopsAndCreepGoesOnInIt) {
   EXPECT_NEAR(filter.vector().values[0], stiffening().at(5e-5) * 0.5, 1e-15) << "bristles arrive unbent";
 }
 
-// dq/dt = -(q / tau) (q / r)^2 has the solution q = q_0 / sqrt(1 + 2 (t / tau) (q_0 / r)^2).
-// The result does not depend on the step length.
-TEST(Features, CreepFallsWithTheRootOfTime) {
-  FeatureFilter filter({creep({0.5}, {5e-3, {1.0, 0.0, 0.0, 0.0}})});
-  feed(filter, 0.0, 0.0);
-  const double first = feed(filter, 1e-6, 4e-3).values[0];
-  EXPECT_NEAR(first, 0.8 * 0.8, 1e-6);
-  for (const double t : {0.01, 0.1, 3.0, 500.0}) {
-    EXPECT_NEAR(feed(filter, t, 4e-3).values[0], first / std::sqrt(1.0 + 2.0 * t / 0.5 * 0.64), 1e-5 * first) << t;
-  }
-}
-
 // The work of a closed cycle after the transient, by the trapezoidal rule.
 double work_of_a_cycle(const FeatureSpec& spec, double duration_s, int steps) {
   FeatureFilter filter({spec});

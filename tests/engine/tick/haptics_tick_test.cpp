@@ -95,19 +95,6 @@ TEST(HapticsTick, GivesNoForceOutOfContact) {
   EXPECT_GT(outside, 500);
 }
 
-TEST(HapticsTick, OneModelsForceDoesNotDependOnItsNeighbours) {
-  const ForceModels all = test::example_force_models();
-  HapticsTick together({30e-6, 0.0}, all);
-  std::vector<HapticsTick> alone;
-  for (const auto& model : all) alone.emplace_back(SensorSpec{30e-6, 0.0}, ForceModels{model});
-  for (const RecordingRow& row : test::example_recording(2000, 1000.0, 30e-6).rows) {
-    const TickSnapshot snapshot = together.step(tool_sample(row));
-    for (std::size_t m = 0; m < all.size(); ++m) {
-      ASSERT_EQ(snapshot.force_N[m], alone[m].step(tool_sample(row)).force_N[0]);
-    }
-  }
-}
-
 // The bound of a stream that begins in mid-press covers what its past may have been, until the tool leaves the
 // material.
 TEST(HapticsTick, AStreamThatBeginsInContactHasAWiderBound) {

@@ -34,13 +34,6 @@ TEST(SensorIdentification, ARampIsNoEncoder) {
   EXPECT_EQ(identify(recording).encoder_step_m, 0.0);
 }
 
-TEST(SensorIdentification, TheLastDigitOfATextIsNoEncoder) {
-  Recording recording = test::example_recording(5000, 1000.0);
-  add_noise(recording, &RecordingRow::position_m, 6e-6);
-  for (RecordingRow& row : recording.rows) row.position_m = std::round(row.position_m * 1e8) / 1e8;
-  EXPECT_EQ(identify(recording).encoder_step_m, 0.0);
-}
-
 // The tolerance is a factor of 1.6 for rounding to 1, 2 or 5, and 10 % by which the quietest
 // fifth of the windows differs between recordings.
 TEST(SensorIdentification, FindsTheNoiseOfAPositionThatIsNotQuantised) {

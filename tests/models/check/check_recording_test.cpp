@@ -60,13 +60,6 @@ void first_seconds(Recording& recording, double from_s, double seconds) {
                 [&](const RecordingRow& row) { return row.time_s < from_s || row.time_s > from_s + seconds; });
 }
 
-TEST(CheckRecording, WarnsOfNoForceThatAMachineReaches) {
-  Recording recording = silicone();
-  each(recording, [](RecordingRow& row) { row.force_N *= 100.0; });  // 700 N
-  const RecordingCheck check = checked(recording, kSilicone);
-  EXPECT_EQ(find(check, "force_unit"), nullptr) << all_of(check);
-}
-
 // Time in air between two presses is not a hold, although the tool comes back to where it left the surface.
 TEST(CheckRecording, AHoldIsInContact) {
   Recording recording;
@@ -213,18 +206,6 @@ TEST(CheckRecording, WithoutFreeAirNothingIsToldOfSurfaceAndZero) {
   for (const char* code : {"surface_offset", "force_zero", "force_zero_drift", "lag"}) {
     EXPECT_EQ(find(check, code), nullptr) << all_of(check);
   }
-}
-
-// A material that softens with depth looks like a flipped sign, so this is only a warning.
-TEST(CheckRecording, OnlyWarnsOfSignsWhereAMaterialMayBeLikeThat) {
-  Recording softening;
-  for (int i = 0; i < 1000; ++i) {
-    const double share = 1e-3 * i;
-    const double force_N = share < 0.2 ? 0.2 + 8.0 * share : 1.8 - 1.9 * (share - 0.2);
-    softening.rows.push_back({1e-2 * i, 2e-3 * share, force_N, 0.0, 0.0});
-  }
-  const RecordingCheck check = checked(softening, CheckRequest{});
-  EXPECT_STRNE(check.verdict(), "unusable") << all_of(check);
 }
 
 // The highest value of a quantised or held force is no limit of the sensor; a limit is found in all of them.

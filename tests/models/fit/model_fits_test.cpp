@@ -65,26 +65,5 @@ TEST(ModelFits, AFitIsThatOfAPlanAlone) {
   }
 }
 
-// What the paper leaves open is selected once for a number of centres, with one question for each of six settings.
-TEST(ModelFits, ChoicesAreThoseOfTheFirstFitWithAsManyCentres) {
-  ModelFits fits = example_fits();
-  must(fits.prepare(plan_for(Base::force, kRandomMethod), {}));
-  const int first = counted(fits, plan_for(Base::force, kRandomMethod)).second;
-  EXPECT_EQ(counted(fits, plan_for(Base::force, kRandomMethod)).second, first - 6);
-  EXPECT_EQ(counted(fits, plan_for(Base::force, kRandomMethod, 20)).second, first);
-  const auto random = must(fits.fit(plan_for(Base::force, kRandomMethod), {}));
-  const auto kdtree = must(fits.fit(plan_for(Base::force, kKdTreeMethod), {}));
-  ASSERT_TRUE(random.choices && kdtree.choices);
-  EXPECT_EQ(choices_text(*kdtree.choices), choices_text(*random.choices));
-  // Another kernel has other choices.
-  ModelPlan linear = plan_for(Base::force, kRandomMethod);
-  linear.kernel = KernelKind::linear;
-  EXPECT_EQ(must(fits.fit(linear, {})).choices->kernel, KernelKind::linear);
-  // The direct interpolation has a smoothing.
-  const auto direct = must(fits.fit(plan_for(Base::force, kDirectMethod), {}));
-  EXPECT_EQ(direct.choices->truncation, 0.0);
-  EXPECT_GT(direct.choices->smoothing, 0.0);
-}
-
 }  // namespace
 }  // namespace palpate

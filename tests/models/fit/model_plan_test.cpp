@@ -145,19 +145,6 @@ TEST(PlanOptions, RefuseWhatTheMethodDoesNotTake) {
   for (const auto& [text, message] : wrong) EXPECT_EQ(message_of(parse_plan_options(text)), message);
 }
 
-TEST(FeatureListText, ReadsItsOwnExample) {
-  const FeatureList list = must(parse_feature_list(kFeatureListExample));
-  std::vector<FeatureKind> kinds;
-  for (const FeatureSpec& spec : list.features) kinds.push_back(spec.kind);
-  EXPECT_EQ(kinds, (std::vector{FeatureKind::depth, FeatureKind::velocity, FeatureKind::maxwell_spectrum,
-                                FeatureKind::maxwell_spectrum, FeatureKind::stops, FeatureKind::creep}));
-  EXPECT_EQ(constants_of(list.features[2]), std::vector{0.17});
-  EXPECT_EQ(constants_of(list.features[3]), (std::vector{0.4, 1.27}));
-  ASSERT_EQ(list.features[4].part_count, 1U);
-  EXPECT_DOUBLE_EQ(list.features[4].parts[0].threshold_m, 1e-4);
-  EXPECT_EQ(constants_of(list.features[5]), (std::vector{0.1, 1.0}));
-}
-
 TEST(FeatureListText, SaysWhatIsWrong) {
   for (const char* text : {"", "depth,", "speed", "velocity,velocity", "maxwell", "maxwell:", "maxwell:-1",
                            "maxwell:0.1+", "stops:0.1", "stops:0mm", "creep:", "creep:nan", "maxwell:1e999"})

@@ -72,18 +72,6 @@ TEST(OpenChoices, TheBestOfAllKernelsIsSelected) {
   EXPECT_EQ(best.error_over_jnd, least);
 }
 
-// One sample in fifty is ten times as fast as the others, so that the range of the velocity compresses the slow motion.
-// That is right for a force of the depth alone, and wrong for one that varies with slow motion.
-TEST(OpenChoices, TheNormalisationIsThatOfTheFeatureThatDecides) {
-  for (const bool depth_decides : {true, false}) {
-    const Repeated from = repeated_places([&](Eigen::Vector2d& u, std::size_t i) {
-      if (i % 50 == 0) u(1) *= 10.0;
-      return 3.0 + std::sin(12.0 * (depth_decides ? u(0) : std::clamp(u(1), -1.0, 1.0)));
-    });
-    EXPECT_EQ(select(from, 100, KernelKind::cubic).range_exponent, depth_decides ? 1.0 : 0.5);
-  }
-}
-
 TEST(OpenChoices, CanBeInterruptedBeforeEachSetting) {
   const Repeated from = repeated_places();
   for (int stop = 1; stop <= 6; ++stop) {

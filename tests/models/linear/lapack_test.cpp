@@ -53,27 +53,5 @@ TEST(SingularValues, ThatDidNotConvergeGiveNoNumbers) {
   EXPECT_TRUE(x.array().isNaN().all());
 }
 
-double condition_of(Eigen::MatrixXd a) {
-  const double norm = a.cwiseAbs().colwise().sum().maxCoeff();
-  EXPECT_TRUE(cholesky_in_place(a));
-  return cholesky_condition(a, norm);
-}
-
-// In the 1-norm. The estimate is exact for matrices this small.
-TEST(Cholesky, ConditionNumbersAreThoseOfTheClosedForms) {
-  EXPECT_NEAR(condition_of(Eigen::MatrixXd::Identity(5, 5)), 1.0, kRounding);
-  EXPECT_NEAR(condition_of(Eigen::Vector3d(4.0, 1.0, 0.5).asDiagonal()), 8.0, 8 * kRounding);
-  Eigen::Matrix2d pair;
-  pair << 2.0, 1.0, 1.0, 2.0;
-  EXPECT_NEAR(condition_of(pair), 3.0, 3 * kRounding);
-  // Hilbert matrices (Todd 1954); the error of the inverse is the condition number times that of the elements.
-  for (const auto& [n, expected] : {std::pair{3, 748.0}, {4, 28375.0}, {5, 943656.0}}) {
-    Eigen::MatrixXd hilbert(n, n);
-    for (int i = 0; i < n; ++i)
-      for (int j = 0; j < n; ++j) hilbert(i, j) = 1.0 / (i + j + 1);
-    EXPECT_NEAR(condition_of(hilbert), expected, expected * expected * 1e-15) << n;
-  }
-}
-
 }  // namespace
 }  // namespace palpate

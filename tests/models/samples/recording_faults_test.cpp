@@ -81,15 +81,6 @@ TEST(RecordingFaults, FindsDropoutsOfTheForceWhereThereIsAForce) {
   }
 }
 
-TEST(RecordingFaults, ATapIsNoDropout) {
-  Recording taps;
-  for (int i = 0; i < 2000; ++i) {
-    const double depth_m = i % 20 == 10 ? 4e-3 : 0.0;  // 100 ms long, in one row of a slow recording
-    taps.rows.push_back({0.1 * i, depth_m + 1e-6 * std::sin(3.0 * i), 500.0 * depth_m, 0.0, 0.0});
-  }
-  EXPECT_EQ(remove_faults(taps).position_dropouts, 0u);
-}
-
 TEST(RecordingFaults, UsesTheUpdatesOfASlowChannel) {
   for (const auto column : {&RecordingRow::position_m, &RecordingRow::force_N}) {
     for (const double rows : {5.0, 12.5, 19.0, 44.0, 100.0}) {

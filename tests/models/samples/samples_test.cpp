@@ -243,51 +243,6 @@ TEST(Samples, OfLongRecordingsEveryNthRowIsKept) {
   }
 }
 
-TEST(Samples, StopWheneverTheyAreAsked) {
-  const std::vector<PreparedRecordingPointer> recordings{prepare_recording(test::example_recording(150000, 1000.0)),
-                                                         prepare_recording(test::example_recording(1000, 1000.0))};
-  int questions = 0;
-  ASSERT_TRUE(make_samples(recordings, JndLine{}, {[&](double) { return ++questions > 0; }}).ok());
-  ASSERT_EQ(questions, 4) << "three within 150,000 rows and one";
-  for (int stop = 1; stop <= questions; ++stop) {
-    int asked = 0;
-    const auto stopped = make_samples(recordings, JndLine{}, {[&](double) { return ++asked < stop; }});
-    EXPECT_EQ(test::message_of(stopped), "interrupted") << stop;
-  }
-}
-
-TEST(ThinnedRows, AreEvenlySpacedOverTheWholeWithTheMotionOfAllRows) {
-  const Recording recording = test::example_recording(1000, 1000.0);
-  const std::vector<Sample> all = thinned_rows(recording, kAllRows), few = thinned_rows(recording, 99);
-  ASSERT_EQ(all.size(), 1000u);
-  EXPECT_LE(few.size(), 99u);
-  EXPECT_GT(few.back().tool.time_s, 0.98 * all.back().tool.time_s);
-  for (const Sample& row : few) {
-    const auto same = std::ranges::find(all, row.tool.time_s, [](const Sample& one) { return one.tool.time_s; });
-    ASSERT_NE(same, all.end());
-    EXPECT_EQ(row.motion.velocity_m_per_s, same->motion.velocity_m_per_s);
-  }
-}
-
-TEST(Thinned, KeepsRowsThatAreFarEnoughApart) {
-  const Samples samples = samples_of({presses(4), presses(3)});
-  const Samples few = thinned(samples, 3.9e-3);
-  ASSERT_EQ(few.rows.size(), 1750u);
-  for (std::size_t i = 0; i < few.rows.size(); ++i) {
-    ASSERT_EQ(few.rows[i].tool.position_m, samples.rows[4 * i].tool.position_m);
-    ASSERT_EQ(few.recording[i], samples.recording[4 * i]);
-    ASSERT_EQ(few.stroke[i], samples.stroke[4 * i]);
-    ASSERT_EQ(few.fold[i], samples.fold[4 * i]);
-  }
-  for (const std::size_t i : few.contact) ASSERT_GT(few.rows[i].tool.position_m, 0.0);
-  EXPECT_EQ(few.contact.size(), static_cast<std::size_t>(std::ranges::count_if(
-                                    few.rows, [](const Sample& row) { return row.tool.position_m > 0.0; })));
-  EXPECT_EQ(few.depth_m, samples.depth_m);
-  EXPECT_EQ(few.sample_s, samples.sample_s);
-  EXPECT_EQ(few.strokes, samples.strokes);
-  EXPECT_EQ(thinned(samples, 0.0).rows.size(), samples.rows.size());
-}
-
 // Twelve features, in two filters of eight and four.
 std::vector<FeatureSpec> many_features() {
   std::vector<FeatureSpec> features = test::memory_features();

@@ -68,17 +68,6 @@ TEST(ProfileSearch, AnOffsetThatTheMaterialImitatesIsNotIdentified) {
   EXPECT_NEAR(estimate_offset([](double x) { return bowl(x, 7.3, 0.01); }, with_effect).at, 7.3, 0.01);
 }
 
-TEST(ProfileSearch, ABlurIsPartOfTheError) {
-  SearchRange with_effect = kRange;
-  with_effect.systematic_effect = 1.0;
-  const auto at = [&](double place) {
-    return estimate_offset([=](double x) { return bowl(x, place, 0.01); }, with_effect);
-  };
-  EXPECT_EQ(at(0.9).at, 0.0);
-  EXPECT_NEAR(at(3.0).at, 3.0, 0.01);
-  EXPECT_GE(at(3.0).standard_error, 0.5);
-}
-
 TEST(ProfileSearch, AnEdgeTwoMinimaOrOneBlockIdentifyNothing) {
   const auto edge = [](double x) { return bowl(x, 14.0, 0.01); };
   const auto two = [](double x) { return bowl(std::abs(x), 5.0, 0.01); };

@@ -90,15 +90,6 @@ TEST(SurfaceEstimate, MeasuresASurfaceThatMoves) {
   EXPECT_NEAR(creeping.offset_drift_m, 0.2e-3, 0.02e-3);
 }
 
-// Some rows of the free air are pulled at by 0.1 N: the median stays, and the mean would be 0.01 N.
-TEST(SurfaceEstimate, TheForceZeroIsThatOfMostRowsInAir) {
-  Recording recording = spring_presses(3, kRestBeforeTouch_s);
-  for (std::size_t i = 0; i < recording.rows.size(); ++i) {
-    if (recording.rows[i].position_m < -2.5e-3 && i % 10 == 0) recording.rows[i].force_N += 0.1;
-  }
-  EXPECT_EQ(estimate_surface(recording).force_zero_N, 0.0);
-}
-
 TEST(SurfaceEstimate, MeasuresADriftingForceZero) {
   Recording recording = spring_presses(3, 6.0);
   const double end_s = recording.rows.back().time_s;

@@ -110,30 +110,6 @@ TEST_F(FitVerb, SaysWhatWasSelectedAndWhatComesNext) {
                         {"relaxation times  fast ", " s, middle ", " s, slow "}));
 }
 
-TEST_F(FitVerb, OnTheForceSaysWhatItSelected) {
-  const ProgramRun run = fit({"--json"}, "kdtree");
-  expect_model(run);
-  const auto object = nlohmann::json::parse(run.out);
-  EXPECT_EQ(object.at("name"), "kdtree-20");
-  EXPECT_EQ(object.at("weighting"), "relative");
-  EXPECT_GT(object.at("rank"), 0);
-  EXPECT_GE(object.at("condition_number"), 1.0);
-  const std::string notes = object.at("notes").dump();
-  EXPECT_TRUE(test::has_parts(notes, {"kernel", "divided by", "truncation", "cross-validated error"})) << notes;
-  expect_model(fit({"--kernel", "linear", "--json", "--force"}, "kdtree"));
-}
-
-TEST_F(FitVerb, SeveralRecordingsAreOneTrainingSet) {
-  Recording other = example_recording(4000, 1000.0);
-  for (RecordingRow& row : other.rows) row.force_N *= 1.001;
-  const std::string second = recording() + ".second.csv";
-  ASSERT_TRUE(write_recording(second, other, {}, false).ok());
-  const ProgramRun run =
-      run_palpate({"fit", "--recording", recording(), second, "--method", "random", "--out", out(), "--json"});
-  expect_model(run);
-  EXPECT_EQ(nlohmann::json::parse(run.out).at("samples"), 5000);
-}
-
 TEST_F(FitVerb, WrongUsageListsTheKnownNames) {
   expect_refused(fit({}, "guess"), 2, {"direct, voxel, random, kdtree, greedy, trend, trend+direct"});
   expect_refused(fit({}, "greedy-0"), 2, {"greedy-0", "1 to 2000"});

@@ -79,24 +79,6 @@ TEST(Evaluate, RecordingsArePooledWithASurfaceEach) {
   }
 }
 
-TEST(Evaluate, SamplesThatAreNotCountedAreReplayed) {
-  const Recording recording = test::example_recording(800, 1000.0);
-  std::uint64_t counted = 0;
-  double largest_N = 0.0;  // error of the first model
-  EvaluationRequest request;
-  request.counted_from_s = recording.rows[400].time_s;
-  request.also = [&](const RecordingRow& row, const TickSnapshot& snapshot, const HapticsTick&) {
-    if (row.time_s < request.counted_from_s || !snapshot.in_contact) return;
-    ++counted;
-    largest_N = std::max(largest_N, std::abs(snapshot.force_N[0] - row.force_N));
-  };
-  const auto result = test::must(evaluate(recording, example_list(), request));
-  EXPECT_EQ(result.samples, 800u);
-  EXPECT_GT(counted, 0u);
-  EXPECT_EQ(result.no_force.summary().samples, counted);
-  EXPECT_EQ(result.models[0].as_recorded.summary().max_error_N, largest_N);
-}
-
 TEST(ModelErrors, CountErrorsWithinTheBoundAndKnowWhenItSaysNothing) {
   const JndLine jnd{0.1, 0.0};
   ModelErrors errors(jnd);

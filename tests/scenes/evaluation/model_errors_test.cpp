@@ -11,15 +11,6 @@
 namespace palpate {
 namespace {
 
-TEST(StrokeCounter, AStrokeGoesFromTouchToRelease) {
-  StrokeCounter counter;
-  int strokes = 0;
-  for (int i = 0; i < 1000; ++i) {  // 10 Hz: the step exceeds the longest pause that is ascribed to noise
-    strokes += counter.begins_stroke(0.1 * i, i % 100 >= 10) ? 1 : 0;
-  }
-  EXPECT_EQ(strokes, 10);
-}
-
 // Adds a recording with strokes of 100 samples, with `beyond` errors above the JND in each.
 ModelErrors strokes_with(const std::vector<int>& beyond, ModelErrors errors = ModelErrors(JndLine{})) {
   errors.begin_recording();

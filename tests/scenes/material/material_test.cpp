@@ -232,45 +232,6 @@ TEST(FrictionBlock, ReversalFollowsDahlsLaw) {
   }
 }
 
-// After a long hold it equals two springs in series: k_i (s - g - y)^1.5 = k_s y.
-TEST(LayeredBlock, RelaxedIsAContactOnASpring) {
-  LayeredBlock block;
-  for (int i = 1; i <= 800; ++i) block.step(1e-5 * i, 1e-2, 1e-3);
-  for (int i = 0; i < 100000; ++i) block.step(8e-3, 0.0, 1e-3);
-  const double inclusion_N = block.force_N() - LayeredBlock::kTop.force_N(8e-3);
-  const double y_m = inclusion_N / LayeredBlock::kSupport_N_per_m;
-  EXPECT_GT(y_m, 1e-4);
-  EXPECT_NEAR(inclusion_N, LayeredBlock::kInclusion_N_per_m1_5 * std::pow(2e-3 - y_m, 1.5), 1e-8);
-}
-
-// Forces at every 10 um of a stroke to 6 mm and back.
-struct Stroke {
-  std::vector<double> in_N, out_N;
-};
-
-Stroke stroke(double speed_m_per_s) {
-  constexpr int kSteps = 600;
-  constexpr double kStep_m = 1e-5;
-  ButtonBlock block;
-  block.reset(0.0);
-  const double dt_s = kStep_m / speed_m_per_s;
-  Stroke result;
-  for (int i = 1; i <= kSteps; ++i) result.in_N.push_back(block.step(i * kStep_m, speed_m_per_s, dt_s));
-  for (int i = kSteps; i > 0; --i) result.out_N.push_back(block.step((i - 1) * kStep_m, -speed_m_per_s, dt_s));
-  std::reverse(result.out_N.begin(), result.out_N.end());
-  return result;
-}
-
-TEST(ButtonBlock, FallsBehindAPeakAndMeetsAFloor) {
-  const Stroke slow = stroke(0.002);
-  const auto peak = std::max_element(slow.in_N.begin(), slow.in_N.begin() + 250);
-  const auto valley = std::min_element(peak, slow.in_N.end());
-  EXPECT_NEAR(1e-5 * static_cast<double>(peak - slow.in_N.begin()), 1.4e-3, 0.4e-3);
-  EXPECT_GT(*peak, 1.5 * *valley) << "a click";
-  EXPECT_GT(*valley, 0.0) << "it comes back by itself";
-  EXPECT_GT(slow.in_N.back(), 2.0 * *peak);
-}
-
 constexpr double kArea_m2 = 3.14159265358979324 * SpongeBlock::kRadius_m * SpongeBlock::kRadius_m;
 
 // The mean pressure of a disc that drains at its rim, from a uniform pressure p0:

@@ -61,17 +61,6 @@ TEST(Plot, HoldsFromThreeTenthsOfANewtonToThreeKilonewtons) {
   }
 }
 
-TEST(Layout, EveryLogarithmicAxisHasTwoLabelsAtLeastAndNotTooMany) {
-  for (double low = 1e-3; low < 1e4; low *= 3.7) {
-    for (double ratio = 1.05; ratio < 1e9; ratio *= 1.9) {
-      const std::vector<double> tics = log_tics({low, low * ratio}, 5);
-      EXPECT_GE(tics.size(), 2u) << low << " to " << low * ratio;
-      EXPECT_LE(tics.size(), 6u) << low << " to " << low * ratio;
-      for (const double at : tics) EXPECT_TRUE(at > 0.998 * low && at < 1.002 * low * ratio);
-    }
-  }
-}
-
 TEST(Layout, NamesAtTheEndsOfCurvesDoNotOverlap) {
   Panel panel;
   panel.names_at_ends = true;

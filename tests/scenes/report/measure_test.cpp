@@ -31,24 +31,6 @@ TEST(Choose, EveryModelIsACandidateAndTheFastestNearTheBestIsTaken) {
   EXPECT_EQ(choice.recommended, 3u);
 }
 
-TEST(HeadlineModels, AreThoseOfThePaperTheTrendAndWhatIsRecommended) {
-  ReportData data;
-  data.models = {ModelResult{}};
-  for (const ModelPlan& plan : all_plans()) data.models.push_back(result(plan_name(plan).c_str(), 0.5, 100.0));
-  const auto named = [&] {
-    std::vector<std::string> names;
-    for (const std::size_t i : headline_models(data)) names.push_back(data.models[i].name);
-    return names;
-  };
-  data.choice = choose(data.models);
-  data.choice.recommended = data.choice.best = 6;
-  const std::vector<std::string> main{"no force",   "voxel", "random-100",      "kdtree-100",
-                                      "greedy-100", "trend", "trend+greedy-100"};
-  EXPECT_EQ(named(), main);
-  data.choice.recommended = 1;
-  EXPECT_EQ(named()[1], "direct");
-}
-
 TEST(TestCurves, TheWorstStretchIsWhereTheFirstModelErrsWithoutFreeAir) {
   // 12 s; from 7 to 8 s the measured force is 50 N larger.
   Recording recording = test::example_recording(12000, 1000.0);

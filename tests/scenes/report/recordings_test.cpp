@@ -83,16 +83,6 @@ TEST(ReportRecordings, OfASingleOneABlockAtItsEndIsTested) {
   EXPECT_TRUE(set.is_tested(0)) << "by a fit to the rest of it";
 }
 
-TEST(ReportRecordings, TheirOrderDoesNotMatter) {
-  const auto one = split({noisy("a"), noisy("b")}, {noisy("c")});
-  const auto other = split({noisy("b"), noisy("a")}, {noisy("c")});
-  ASSERT_TRUE(one.ok() && other.ok());
-  for (std::size_t i = 0; i < one->all.size(); ++i) {
-    EXPECT_EQ(one->all[i]->recording.name, other->all[i]->recording.name);
-    EXPECT_EQ(one->all[i]->content_hash, other->all[i]->content_hash);
-  }
-}
-
 TEST(ReportRecordings, RefusesUnusableRecordings) {
   EXPECT_TRUE(test::has_parts(split({noisy("short", 100)}, {}), {"100 rows", "1000", "--test"}));
   Recording air = noisy("air", 100);

@@ -56,8 +56,6 @@ TEST(Psychometrics, MarksSlopesThatAnswersDoNotBound) {
   for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(functions[i].determined, i == 0) << i;
 }
 
-using test::example_strokes;
-
 // A session whose answers have exactly the expected frequencies, with `repetitions` of
 // each pair in each order.
 StudyData average_subject(const std::string& code, const std::vector<double>& relative_jnds, int repetitions) {
@@ -102,20 +100,6 @@ TEST(StudyAnalysis, ReproducesTheLineOfThePaper) {
   // Without the point of Pang, Tan & Durlach the line differs.
   const auto own = analyse_study({average_subject("S01", relative, 1000)}, false);
   EXPECT_GT(own->lines->fitted.weber_fraction, 0.08);
-}
-
-TEST(StudyAnalysis, AveragesOverTheSubjects) {
-  const StudyData one = average_subject("S01", {0.2, 0.2, 0.2, 0.2}, 200);
-  const StudyData two = average_subject("S02", {0.1, 0.1, 0.1, 0.1}, 200);
-  const auto analysis = test::must(analyse_study({one, two}, false));
-  for (const ReferenceJnd& mean : analysis.mean.references) {
-    EXPECT_EQ(mean.count, 2u);
-    EXPECT_NEAR(mean.jnd_N, 0.15 * mean.reference_N, 2e-3 * mean.reference_N);
-    EXPECT_NEAR(mean.standard_error_N, 0.05 * mean.reference_N, 2e-3 * mean.reference_N);
-  }
-  const std::string table = analysis_table(analysis);
-  EXPECT_EQ(std::count(table.begin(), table.end(), '\n'), 1 + 8 + 4);
-  EXPECT_EQ(table.substr(table.find('\n') + 1, 17), "S01,0.3,0.3,3200,");
 }
 
 TEST(StudyAnalysis, UsesTheRenderedForces) {
@@ -166,15 +150,6 @@ TEST(JndLineFit, RefusesDecreasingAndNegativeLines) {
   EXPECT_TRUE(test::has_parts(negative, {"-0.1000 N + 20.00 %"}));
 }
 
-std::vector<StudyRecord> answers(std::size_t correct, std::size_t trials) {
-  std::vector<StudyRecord> records(trials);
-  for (std::size_t i = 0; i < trials; ++i) {
-    records[i].trial.comparison_first = i % 2 == 0;
-    records[i].answered_second = records[i].trial.comparison_first == (i < correct);
-  }
-  return records;
-}
-
 // (p + z^2/2n -+ z sqrt(p(1-p)/n + z^2/4n^2)) / (1 + z^2/n) with z = 1.959964; Brown, Cai &
 // DasGupta (2001) tabulate the same.
 TEST(Discrimination, HasTheIntervalOfWilson) {
@@ -186,17 +161,6 @@ TEST(Discrimination, HasTheIntervalOfWilson) {
   EXPECT_EQ(correct_share({"S01", 10, 10, 0}).high, 1.0);
   EXPECT_NEAR(correct_share({"S01", 10, 0, 0}).high, z2 / (10.0 + z2), 1e-6);
   EXPECT_EQ(correct_share({"S01", 0, 0, 0}).high, 1.0);
-}
-
-TEST(Discrimination, ExcludesTrialsThatWereNotRendered) {
-  std::vector<StudyRecord> records = answers(60, 100);
-  records[0].trial.training = true;
-  records[1].worst_N = 0.033;  // half a JND at 0 N is 32.5 mN
-  records[2].worst_N = 0.032;
-  const Discrimination result = discrimination_of("S01", records, *example_strokes(0.9));
-  EXPECT_EQ(result.trials, 98u);
-  EXPECT_EQ(result.correct, 58u);
-  EXPECT_EQ(result.unusable, 1u);
 }
 
 TEST(Discrimination, ComparesThePredictionWithTheAnswers) {

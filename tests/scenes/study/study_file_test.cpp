@@ -54,31 +54,6 @@ TEST(StudyPlan, PresentsEachPairTenTimesBalancedForOrder) {
   }
 }
 
-TEST(StudyPlan, DiscriminationsAreBalancedInEveryBlock) {
-  StrokePair strokes;
-  strokes.reference_mean_N = 1.2;
-  strokes.comparison_mean_N = 1.3;
-  for (const char* code : {"S01", "S02", "AB1234"}) {
-    const std::vector<StudyTrial> trials = study_trials(code, &strokes);
-    ASSERT_EQ(trials.size(), kDiscriminationTrials);
-    for (std::size_t from = 0; from < trials.size(); from += kDiscriminationBlock) {
-      const auto block = trials.begin() + static_cast<std::ptrdiff_t>(from);
-      EXPECT_EQ(std::count_if(block, block + kDiscriminationBlock,
-                              [](const StudyTrial& trial) { return trial.comparison_first; }),
-                static_cast<std::ptrdiff_t>(kDiscriminationBlock / 2));
-    }
-    EXPECT_EQ(trials[7].reference_N, 1.2);
-    EXPECT_EQ(trials[7].comparison_N, 1.3);
-    EXPECT_EQ(trials, study_trials(code, &strokes));
-  }
-  EXPECT_NE(study_trials("S01", &strokes), study_trials("S02", &strokes));
-  const auto plan = plan_study("S01", &strokes);
-  EXPECT_EQ(plan[3].comparison_N, 0.6);
-  EXPECT_TRUE(plan[3].training);
-  EXPECT_EQ(plan[3].number, 4u);
-  EXPECT_EQ(plan[4].number, 1u);
-}
-
 using test::has_parts;
 using test::read_text;
 
@@ -306,16 +281,6 @@ TEST(PrepareStrokes, TwoModelsDifferByTheirStiffness) {
   EXPECT_EQ((*same)->max_over_jnd, 0.0);
   EXPECT_EQ((*same)->reference_N, (*same)->comparison_N);
   EXPECT_NE((*same)->checksum, strokes->checksum);
-}
-
-TEST(PrepareStrokes, ExcludesStrokesBeyondTheLimits) {
-  const JndLine jnd;
-  const auto weak = test::must(strokes_of(presses({0.06, 0.01}, 0.0), spring(100.0), spring(80.0), jnd));
-  for (std::uint32_t i = 0; i < kInterval_ticks; ++i) {
-    ASSERT_LE(weak->reference_N[i] * interval_share(i), 0.95 * kLargestStudyForce_N);
-  }
-  EXPECT_TRUE(test::has_parts(strokes_of(presses({-0.01}, 0.0), spring(100.0), spring(80.0), jnd),
-                              {"1.1 s", "3.8 N", "2.5 N", "90 N/s", "spring", "; "}));
 }
 
 }  // namespace

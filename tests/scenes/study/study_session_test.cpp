@@ -91,19 +91,6 @@ TEST_F(StudySessionTest, RunsFromConsentToTheEnd) {
   }
 }
 
-TEST_F(StudySessionTest, BreaksLastTheirTime) {
-  const auto session = begun({"S01"}, 500);
-  answer_trials(*session, 8 + 64, truly_larger);
-  ASSERT_EQ(session->state(), StudyState::rest);
-  EXPECT_EQ(session->view().rest_ticks_left, 500u);
-  for (int i = 0; i < 499; ++i) session->next_force_N(0.0);
-  session->proceed();
-  EXPECT_EQ(session->state(), StudyState::rest);
-  session->next_force_N(0.0);
-  session->proceed();
-  EXPECT_EQ(session->state(), StudyState::presenting);
-}
-
 TEST_F(StudySessionTest, AsksAgainForAnAnswerThatCouldNotBeStored) {
   const auto session = begun();
   answer_trials(*session, 3, truly_larger);
