@@ -1,4 +1,4 @@
-#include "devices/link/device_endpoint.h"
+#include "devices/link/device_link.h"
 
 #include <gtest/gtest.h>
 #include <sys/wait.h>
@@ -19,7 +19,6 @@
 #include "devices/bridge/bridge_bus.h"
 #include "devices/firmware/bridge_protocol.h"
 #include "devices/hid/hidapi_bus.h"
-#include "devices/link/device_link.h"
 #include "devices/link/device_protocol.h"
 #include "engine/base/random_stream.h"
 #include "engine/base/signals.h"

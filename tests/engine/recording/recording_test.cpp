@@ -9,7 +9,6 @@
 #include <random>
 
 #include "engine/base/text.h"
-#include "engine/recording/recording_writer.h"
 #include "tests/support/broken_recordings.h"
 #include "tests/support/message_parts.h"
 #include "tests/support/temporary_folder.h"

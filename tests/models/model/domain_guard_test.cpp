@@ -1,4 +1,4 @@
-#include "models/model/domain_guard.h"
+#include "models/model/fitted_model.h"
 
 #include <gtest/gtest.h>
 

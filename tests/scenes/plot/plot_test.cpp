@@ -5,8 +5,6 @@
 #include <algorithm>
 
 #include "engine/base/whole_file.h"
-#include "scenes/plot/draw.h"
-#include "scenes/plot/layout.h"
 #include "tests/support/message_parts.h"
 #include "tests/support/run_program.h"
 #include "tests/support/temporary_folder.h"

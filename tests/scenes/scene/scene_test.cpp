@@ -9,7 +9,6 @@
 
 #include "models/fit/fit.h"
 #include "scenes/material/material.h"
-#include "scenes/scene/folders.h"
 #include "tests/support/message_parts.h"
 #include "tests/support/run_program.h"
 #include "tests/support/temporary_folder.h"

@@ -1,4 +1,4 @@
-#include "scenes/worker/model_request.h"
+#include "scenes/worker/model_worker.h"
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,6 @@
 #include <array>
 #include <filesystem>
 
-#include "scenes/worker/model_request.h"
 #include "scenes/worker/model_worker.h"
 #include "tests/support/message_parts.h"
 #include "tests/support/temporary_folder.h"
