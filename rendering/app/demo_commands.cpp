@@ -9,7 +9,7 @@
 #include "engine/live/pacer.h"
 #include "rendering/app/demo_app.h"
 #include "rendering/panels/window_view.h"
-#include "scenes/worker/model_request.h"
+#include "scenes/worker/model_worker.h"
 
 namespace palpate {
 namespace {

@@ -13,8 +13,8 @@
 #include "engine/base/text.h"
 #include "engine/base/whole_file.h"
 #include "rendering/panels/panel_parts.h"
-#include "scenes/plot/draw.h"
-#include "scenes/scene/folders.h"
+#include "scenes/plot/plot.h"
+#include "scenes/scene/scene.h"
 
 namespace palpate {
 

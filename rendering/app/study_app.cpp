@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "rendering/panels/panel_parts.h"
-#include "scenes/scene/folders.h"
+#include "scenes/scene/scene.h"
 #include "scenes/study/study_analysis.h"
 
 namespace palpate {

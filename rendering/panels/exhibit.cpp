@@ -11,7 +11,7 @@
 #include "engine/base/text.h"
 #include "engine/live/pacer.h"
 #include "rendering/panels/scene_overlay.h"
-#include "scenes/scene/folders.h"
+#include "scenes/scene/scene.h"
 
 namespace palpate {
 namespace {

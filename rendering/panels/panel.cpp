@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <vector>
 
-#include "scenes/worker/model_request.h"
+#include "scenes/worker/model_worker.h"
 
 namespace palpate {
 namespace {

@@ -13,8 +13,7 @@
 #include "models/samples/recording_faults.h"
 #include "scenes/cli/verbs.h"
 #include "scenes/evaluation/evaluate.h"
-#include "scenes/plot/compared_forces.h"
-#include "scenes/plot/draw.h"
+#include "scenes/plot/plot.h"
 #include "scenes/scene/scene.h"
 
 namespace palpate::cli {

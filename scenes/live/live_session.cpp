@@ -14,7 +14,7 @@
 #include "scenes/live/session_recordings.h"
 #include "scenes/live/true_force.h"
 #include "scenes/material/rig.h"
-#include "scenes/scene/folders.h"
+#include "scenes/scene/scene.h"
 
 namespace palpate {
 namespace {

@@ -24,7 +24,7 @@
 #include "scenes/live/session_recorder.h"
 #include "scenes/live/verdict.h"
 #include "scenes/scene/scene.h"
-#include "scenes/worker/model_request.h"
+#include "scenes/worker/model_worker.h"
 
 namespace palpate {
 
@@ -37,7 +37,7 @@ struct SessionRequest {
   // set as well is set apart for the test, if models are fitted to the rest or were (this names it).
   std::string test{}, device = "auto";
   std::vector<std::string> models{};  // methods or model files; empty: those of `line_up`
-  std::string line_up{};  // a name of line_ups() (model_request.h); empty or unknown: the scene's default models
+  std::string line_up{};  // a name of line_ups(); empty or unknown: the scene's default models
   // Additional models, of an earlier session (SessionModels::requests). `refits` false: the session has only these.
   std::vector<ModelRequest> kept{};
   bool refits = true;

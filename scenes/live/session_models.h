@@ -16,7 +16,6 @@
 #include "engine/live/live_tick.h"
 #include "scenes/live/fault_log.h"
 #include "scenes/scene/scene.h"
-#include "scenes/worker/model_request.h"
 #include "scenes/worker/model_worker.h"
 
 namespace palpate {

@@ -18,7 +18,7 @@
 
 #include "engine/base/result.h"
 #include "engine/live/haptics_loop.h"
-#include "engine/recording/recording_writer.h"
+#include "engine/recording/recording.h"
 #include "scenes/live/force_history.h"
 
 namespace palpate {

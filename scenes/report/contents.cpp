@@ -9,7 +9,7 @@
 #include "engine/base/text.h"
 #include "models/correction/methods.h"
 #include "scenes/evaluation/evaluate.h"
-#include "scenes/plot/layout.h"
+#include "scenes/plot/plot.h"
 
 namespace palpate {
 namespace {

@@ -11,7 +11,7 @@
 #include "models/model/fitted_model.h"
 #include "scenes/evaluation/evaluate.h"
 #include "scenes/evaluation/model_errors.h"
-#include "scenes/plot/compared_forces.h"
+#include "scenes/plot/plot.h"
 #include "scenes/report/recordings.h"
 #include "scenes/scene/scene.h"
 

@@ -16,7 +16,7 @@
 #include "models/model/file/model_io.h"
 #include "scenes/evaluation/model_errors.h"
 #include "scenes/report/contents.h"
-#include "scenes/scene/folders.h"
+#include "scenes/scene/scene.h"
 
 namespace palpate {
 namespace {

@@ -11,7 +11,6 @@
 #include "scenes/evaluation/model_errors.h"
 #include "scenes/material/rig.h"
 #include "scenes/scene/scene.h"
-#include "scenes/worker/model_request.h"
 #include "scenes/worker/model_worker.h"
 
 namespace palpate {

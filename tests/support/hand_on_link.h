@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "devices/bridge/bridge_bus.h"
-#include "devices/link/device_endpoint.h"
+#include "devices/link/device_link.h"
 #include "engine/base/random_stream.h"
 #include "engine/live/live_tick.h"
 #include "scenes/hard/hard.h"

@@ -8,7 +8,6 @@
 #include <fstream>
 #include <iterator>
 #include <memory>
-#include <optional>
 
 #include "devices/bridge/bridge_bus.h"
 #include "tests/support/bridge_session.h"

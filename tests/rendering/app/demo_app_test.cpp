@@ -11,7 +11,7 @@
 
 #include "engine/base/text.h"
 #include "engine/recording/recording.h"
-#include "scenes/worker/model_request.h"
+#include "scenes/worker/model_worker.h"
 #include "tests/support/demo_window.h"
 
 namespace palpate {

@@ -140,22 +140,5 @@ TEST(Settings, ComeBackAsTheyWere) {
   EXPECT_EQ(*back, settings);
 }
 
-TEST(Settings, AreNoReasonNotToStart) {
-  const test::TemporaryFolder folder;
-  const auto missing = read_settings(folder.file("none.json"));
-  ASSERT_TRUE(missing.ok());
-  EXPECT_EQ(*missing, Settings{});
-  std::ofstream(folder.file("odd.json")) << R"({"blocks": 3, "theme": 7, "text_size": 99})";
-  const auto odd = read_settings(folder.file("odd.json"));
-  ASSERT_TRUE(odd.ok());
-  Settings expected;
-  expected.text_size = kLargestText;
-  EXPECT_EQ(*odd, expected);
-  for (const char* broken : {"{", "[]", R"({"camera": {"distance": "far"}})"}) {
-    std::ofstream(folder.file("broken.json")) << broken;
-    EXPECT_FALSE(read_settings(folder.file("broken.json")).ok()) << broken;
-  }
-}
-
 }  // namespace
 }  // namespace palpate

@@ -214,16 +214,6 @@ TEST_F(ExhibitTest, TheInvitationShowsTheSameStrokeWithAWorseModel) {
   EXPECT_TRUE(app_->exhibit().shown_poses(app_->session(), app_->shown(), Theme::dark).empty());
 }
 
-TEST_F(ExhibitTest, TheRoundsDifferInColour) {
-  for (const Theme theme : {Theme::light, Theme::dark}) {
-    const Rgb first = method_colour("random", theme), second = method_colour("kdtree", theme),
-              best = method_colour("trend+greedy", theme);
-    EXPECT_GT(glm::distance(first, second), 0.3F);
-    EXPECT_GT(glm::distance(second, best), 0.3F);
-    EXPECT_GT(glm::distance(first, best), 0.2F);
-  }
-}
-
 // If pictures are saved, the exhibit fits its own models.
 TEST_F(ExhibitTest, EveryScreenIsDrawnInBothLanguagesAtBothSizes) {
   const bool learned = std::getenv("PALPATE_PICTURES") != nullptr;
@@ -361,20 +351,6 @@ TEST_F(ExhibitTest, AForceDeviceIsComparedBlindly) {
   ASSERT_EQ(state(), State::score);
   EXPECT_TRUE(says("All that you felt was computed"));
   picture("score");
-}
-
-TEST_F(ExhibitTest, HasOneWayOut) {
-  open_exhibit({});
-  EXPECT_EQ(app_->view().settings.theme, Theme::dark);
-  press(GLFW_KEY_ESCAPE);
-  press(GLFW_KEY_Q, GLFW_MOD_CONTROL);
-  glfwSetWindowShouldClose(app_->window().handle(), GLFW_TRUE);
-  frames(2);
-  EXPECT_FALSE(app_->closing());
-  press(GLFW_KEY_T);
-  EXPECT_EQ(app_->view().settings.theme, Theme::dark) << "a visitor changes nothing";
-  press(GLFW_KEY_Q, GLFW_MOD_CONTROL | GLFW_MOD_SHIFT);
-  EXPECT_TRUE(app_->closing());
 }
 
 }  // namespace

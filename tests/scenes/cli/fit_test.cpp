@@ -110,69 +110,6 @@ TEST_F(FitVerb, SaysWhatWasSelectedAndWhatComesNext) {
                         {"relaxation times  fast ", " s, middle ", " s, slow "}));
 }
 
-TEST_F(FitVerb, TheTrendAloneHasNoCentres) {
-  const ProgramRun run = fit({"--json"}, "trend");
-  expect_model(run);
-  const auto object = nlohmann::json::parse(run.out);
-  EXPECT_TRUE(object.at("rank").is_null());
-  EXPECT_TRUE(object.at("condition_number").is_null());
-  EXPECT_EQ(object.at("method"), "trend");
-  EXPECT_EQ(object.at("name"), "trend");
-  EXPECT_EQ(object.at("centres"), 0);
-}
-
-// The option must not be ignored silently.
-TEST_F(FitVerb, RefusesAnOptionThatTheMethodHasNoUseFor) {
-  expect_refused(fit({"--grid", "4x3x3x3"}, "greedy"), 2, {"--grid", "greedy", "voxel"});
-  expect_refused(fit({"--candidates", "20"}, "random"), 2, {"--candidates", "random", "greedy"});
-  expect_refused(fit({"--centres", "20"}, "trend"), 2, {"--centres", "trend", "random", "kdtree", "greedy"});
-}
-
-TEST_F(FitVerb, EveryOptionHasAUse) {
-  const Arguments options[] = {{"--kernel", "linear"},  {"--kernel", "thin-plate"},   {"--features", "scene"},
-                               {"--candidates", "all"}, {"--scene", "elastic_block"}, {"--centres", "2000"},
-                               {"--seed", "7"}};
-  for (Arguments option : options) {
-    SCOPED_TRACE(option[0] + " " + option[1]);
-    option.push_back("--force");
-    expect_model(fit(option));
-  }
-  expect_model(fit({"--grid", "4x3x3x3", "--force"}, "voxel"));
-  EXPECT_EQ((*load_model(out()))->name(), "voxel");
-  EXPECT_EQ((*load_model(out()))->centre_count(), 4 * 3 * 3 * 3);
-}
-
-TEST_F(FitVerb, OnTheForceSaysWhatItSelected) {
-  const ProgramRun run = fit({"--json"}, "kdtree");
-  expect_model(run);
-  const auto object = nlohmann::json::parse(run.out);
-  EXPECT_EQ(object.at("name"), "kdtree-20");
-  EXPECT_EQ(object.at("weighting"), "relative");
-  EXPECT_GT(object.at("rank"), 0);
-  EXPECT_GE(object.at("condition_number"), 1.0);
-  const std::string notes = object.at("notes").dump();
-  EXPECT_TRUE(test::has_parts(notes, {"kernel", "divided by", "truncation", "cross-validated error"})) << notes;
-  expect_model(fit({"--kernel", "linear", "--json", "--force"}, "kdtree"));
-}
-
-TEST_F(FitVerb, SeveralRecordingsAreOneTrainingSet) {
-  Recording other = example_recording(4000, 1000.0);
-  for (RecordingRow& row : other.rows) row.force_N *= 1.001;
-  const std::string second = recording() + ".second.csv";
-  ASSERT_TRUE(write_recording(second, other, {}, false).ok());
-  const ProgramRun run =
-      run_palpate({"fit", "--recording", recording(), second, "--method", "random", "--out", out(), "--json"});
-  expect_model(run);
-  EXPECT_EQ(nlohmann::json::parse(run.out).at("samples"), 5000);
-}
-
-TEST_F(FitVerb, WarnsOfTheSameRecordingTwice) {
-  const ProgramRun run =
-      run_palpate({"fit", "--recording", recording(), recording(), "--method", "random", "--out", out(), "--json"});
-  EXPECT_EQ(run.exit_code, 0);
-  EXPECT_TRUE(test::has_parts(run.err, {"warning: " + recording() + ": repeated: ", recording(), "; "}));
-}
-
 TEST_F(FitVerb, WrongUsageListsTheKnownNames) {
   expect_refused(fit({}, "guess"), 2, {"direct, voxel, random, kdtree, greedy, trend, trend+direct"});
   expect_refused(fit({}, "greedy-0"), 2, {"greedy-0", "1 to 2000"});
@@ -201,12 +138,6 @@ TEST_F(FitVerb, AnExistingModelSurvivesWithoutForce) {
   EXPECT_TRUE(test::has_parts(run.err, {"error: ", out(), "--force"}));
   EXPECT_EQ(read_text(out()), "mine");
   expect_model(fit({"--force"}));
-}
-
-TEST_F(FitVerb, ChecksTheOutputBeforeTheFit) {
-  expect_refused(fit({"--out", folder_.file("no/such/model.json")}), 1, {"no/such", "; "});
-  expect_refused(fit({"--out", folder_.path()}), 1, {"folder", "; "});
-  expect_refused(fit({"--out", recording() + "/model.json"}), 1, {"press.csv", "folder"});
 }
 
 // The direct fit takes seconds.

@@ -177,24 +177,6 @@ TEST_F(ReportVerb, ThePagesAreRightInABrowser) {
   EXPECT_LE(std::stoi(pdf.substr(count + 7)), 4);
 }
 
-TEST_F(ReportVerb, EveryModelHasBoundsOfItsErrors) {
-  const Json json = json_of(out());
-  std::map<std::string, Json> errors;
-  for (const Json& row : json["tables"]["models"])
-    EXPECT_TRUE(errors.emplace(row["model"], row).second) << row["model"] << " occurs twice";
-  for (const auto& [name, row] : errors) {
-    if (row["units"] < 3) continue;
-    EXPECT_LE(row["p99_error_over_jnd_low"], row["p99_error_over_jnd"]);
-    EXPECT_GE(row["p99_error_over_jnd_high"], row["p99_error_over_jnd"]);
-    if (row["within_jnd"] == 1.0) {
-      EXPECT_LT(row["within_at_least"], 1.0) << "nothing is certain";
-    }
-  }
-  EXPECT_EQ(errors.count("no force"), 1u);
-  EXPECT_EQ(errors.count("trend"), 1u);
-  for (const Json& row : json["tables"]["recordings"]) EXPECT_EQ(row["content_hash"].get<std::string>().size(), 16u);
-}
-
 // The four commands of the front page, on a table whose sensor reads 0.18 N in air and whose surface is at 12.4 mm, end
 // with the figures of the table without both.
 TEST_F(ReportVerb, AnOffsetOfForceAndSurfaceChangesNoFigure) {
@@ -291,21 +273,6 @@ TEST_F(ReportVerb, TheSameRecordingsGiveTheSameFiguresButForTimes) {
   const std::string name = "/figures/error_by_force.svg";
   EXPECT_TRUE(test::read_text(out() + name) == test::read_text(other + name));
   fs::remove_all(other);
-}
-
-TEST_F(ReportVerb, ListsTheRecordings) {
-  const Json recordings = json_of(out())["tables"]["recordings"];
-  ASSERT_EQ(recordings.size(), 2U);
-  for (const std::size_t i : {0U, 1U}) {
-    const auto read = read_recording(recording(static_cast<int>(i) + 1));
-    ASSERT_TRUE(read.ok());
-    const auto samples = static_cast<double>(read->rows.size());
-    EXPECT_EQ(recordings[i]["role"], i == 0 ? "train" : "test");
-    EXPECT_EQ(recordings[i]["samples"], samples);
-    EXPECT_NEAR(recordings[i]["rate_Hz"].get<double>() * recordings[i]["seconds"].get<double>(), samples - 1.0, 1e-6);
-    EXPECT_GT(recordings[i]["deepest_m"].get<double>(), 0.0);
-    EXPECT_GT(recordings[i]["largest_force_N"].get<double>(), 0.0);
-  }
 }
 
 TEST_F(ReportVerb, CrossValidatesWithoutATest) {

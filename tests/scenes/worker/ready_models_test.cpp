@@ -4,9 +4,7 @@
 #include <array>
 #include <filesystem>
 
-#include "scenes/worker/model_request.h"
 #include "scenes/worker/model_worker.h"
-#include "tests/support/example_model.h"
 #include "tests/support/message_parts.h"
 #include "tests/support/temporary_folder.h"
 
