@@ -143,19 +143,19 @@ TEST(IncludeDirection, NoSourceIncludesAgainstIt) {
 
 TEST(IncludeDirection, FindsTheFaultOfEachArrow) {
   EXPECT_EQ(find_fault("models/model", "engine/tick/jnd.h", true), "");
-  EXPECT_EQ(find_fault("models/fit", "models/model/trend.h", true), "");
+  EXPECT_EQ(find_fault("models/fit", "models/model/fitted_model.h", true), "");
   EXPECT_EQ(find_fault("scenes/live", "devices/link/device_link.h", true), "");
   EXPECT_EQ(find_fault("engine/tick", "vector", false), "");
   EXPECT_NE(find_fault("engine/tick", "engine/live/pacer.h", true), "");
-  EXPECT_NE(find_fault("engine/live", "models/model/trend.h", true), "");
+  EXPECT_NE(find_fault("engine/live", "models/model/fitted_model.h", true), "");
   EXPECT_NE(find_fault("models/model", "models/linear/lapack.h", true), "");
   EXPECT_NE(find_fault("models/model", "models/correction/sites.h", true), "");
   EXPECT_NE(find_fault("models/model", "devices/link/device_link.h", true), "");
   EXPECT_NE(find_fault("scenes/report", "scenes/live/live_session.h", true), "");
   EXPECT_NE(find_fault("scenes/study", "scenes/live/live_session.h", true), "");
   EXPECT_NE(find_fault("engine/live", "devices/link/device_link.h", true), "");
-  EXPECT_NE(find_fault("devices/hid", "models/model/trend.h", true), "");
-  EXPECT_NE(find_fault("rendering/ui", "models/model/trend.h", true), "");
+  EXPECT_NE(find_fault("devices/hid", "models/model/fitted_model.h", true), "");
+  EXPECT_NE(find_fault("rendering/ui", "models/model/fitted_model.h", true), "");
   EXPECT_NE(find_fault("scenes/live", "rendering/ui/plot.h", true), "");
   EXPECT_NE(find_fault("engine/base", "tests/support/rt_guard.h", true), "");
   EXPECT_NE(find_fault("models/model", "GL/gl.h", false), "");

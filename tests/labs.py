@@ -36,7 +36,9 @@ import time
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # a job a core, and times of one thread
 import numpy
 
+sys.path.append(str(pathlib.Path(__file__).resolve().parent.parent / "models" / "library" / "python"))
 import baselines
+import palpate
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 BEGIN, END = "<!-- results: python3 tests/labs.py --write -->", "<!-- end of results -->"
@@ -78,10 +80,14 @@ def rows_of(path):
 class Set:
     """Recordings to train on and to test on, and what the models are asked beyond them."""
 
-    def __init__(self, name, train, tests, folder):
+    def __init__(self, name, train, tests, folder, palpate):
         self.name, self.rig, self.paths = name, train[0].parent.name, (train, tests)
+        # All models have the surface that a fit finds, so that the same samples count.
+        found = folder / f"{name.replace(' ', '_')}_surface.json"
+        run(palpate, "fit", "--recording", *train, "--method", "trend", "--out", found)
+        surface_m = json.loads(found.read_text())["features"][0].get("surface_position_m", 0.0)
         self.after = [next((path for path in train if path.stem == AFTER.get(test.stem)), None) for test in tests]
-        self.train, self.tests = ([baselines.Recording(path) for path in some] for some in (train, tests))
+        self.train, self.tests = ([baselines.Recording(path, surface_m) for path in some] for some in (train, tests))
         self.refuse_leaks()
         self.deepest_m = max(one.position.max() for one in self.train)
         self.largest_N = max(abs(one.force).max() for one in self.train)
@@ -91,11 +97,11 @@ class Set:
         # Presses half as deep again as the training, three times as fast.
         time_s = numpy.arange(4000) * 1e-3
         deep_m = 1.5 * self.deepest_m
-        press = deep_m * (0.5 - 0.5 * numpy.cos(2.0 * 3.0 * self.fastest_m_per_s / deep_m * time_s))
+        press = surface_m + deep_m * (0.5 - 0.5 * numpy.cos(2.0 * 3.0 * self.fastest_m_per_s / deep_m * time_s))
         self.beyond_path = folder / f"{name.replace(' ', '_')}_beyond.csv"
         self.beyond_path.write_text("time_s,position_m,force_N\n" + "".join(
-            f"{at:.4f},{position:.9f},{position / deep_m:.9f}\n" for at, position in zip(time_s, press)))
-        self.beyond = baselines.Recording(self.beyond_path)
+            f"{at:.4f},{position:.9f},{(position - surface_m) / deep_m:.9f}\n" for at, position in zip(time_s, press)))
+        self.beyond = baselines.Recording(self.beyond_path, surface_m)
 
     def refuse_leaks(self):
         trained = {window for one in self.train for window in self.windows(one)}
@@ -121,9 +127,10 @@ class Set:
                 "deeper than the training": contact & (test.position > self.deepest_m),
                 "faster than 99 % of the training": contact & (self.speed(test) > self.fastest_m_per_s)}
 
-    def by_phase(self, index, forces):
+    def by_phase(self, index, forces, limit_N=None):
+        """Share of the errors within the JND, or another limit."""
         test = self.tests[index]
-        near = abs(forces - test.force) <= baselines.jnd(test.force)
+        near = abs(forces - test.force) <= (baselines.jnd(test.force) if limit_N is None else limit_N)
         return {phase: 100 * near[rows].mean() for phase, rows in self.phases[index].items() if rows.sum() >= 20}
 
 
@@ -160,9 +167,9 @@ def of_model(options, folder, one, model):
         return {"error": str(error)}
     middle = dict(seeds[0])
     middle["tests"] = [{figure: median([seed["tests"][test][figure] for seed in seeds])
-                        for figure in seeds[0]["tests"][test] if figure != "phases"} for test in range(len(one.tests))]
+                        for figure in seeds[0]["tests"][test] if figure not in ("phases", "held_in")} for test in range(len(one.tests))]
     for figures, first in zip(middle["tests"], seeds[0]["tests"]):
-        figures["phases"] = first["phases"]
+        figures.update({key: first[key] for key in ("phases", "held_in")})
     return middle
 
 
@@ -180,6 +187,18 @@ def replayed(palpate, folder, path, recording, after=None):
     return found["models"][0], rows[:, -1]
 
 
+def bounds_along(path, test, after):
+    """The 95 % bound of a model at every row of a test; NaN without one."""
+    model = palpate.load(path)
+    if after is None:
+        return model.render(test.time, test.recorded_m)[1]
+    stream, bounds = palpate.Stream(model, after=after), []
+    for time_s, position_m in zip(test.time, test.recorded_m):
+        stream.force(time_s, position_m)
+        bounds.append(stream.bound())
+    return numpy.array(bounds)
+
+
 def of_seed(options, folder, one, model, seed):
     train, tests = one.paths
     path = folder / f"{one.name} {model} {seed}.json".replace(" ", "_")
@@ -195,7 +214,9 @@ def of_seed(options, folder, one, model, seed):
         figures.append({"share": 100 * entry["within_jnd"], "moved": 100 * entry["surface_moved"]["within_jnd"],
                         "p99": entry["p99_error_over_jnd"], "worst": entry["max_error_over_jnd"],
                         "held": None if held is None else 100 * held, "bound": bound.get("median_bound_over_jnd"),
-                        "phases": one.by_phase(index, forces)})
+                        "phases": one.by_phase(index, forces), "held_in": {}})
+        if held is not None:
+            figures[-1]["held_in"] = one.by_phase(index, forces, bounds_along(path, one.tests[index], one.after[index]))
     entry, forces = replayed(options.palpate, folder, path, one.beyond_path)
     return {"tests": figures, "seconds": seconds, "training": 100 * fitted["training_within_jnd"],
             "features": fitted["features"], "rank": fitted.get("rank"), "centres": fitted["centres"],
@@ -349,7 +370,9 @@ def bounds(kinds, results):
         if held:
             width = median([test["bound"] for one in sets for test in results[one.name, OURS].get("tests", [])])
             yield (f"{kind}: the 95 % bound of {OURS} covers {text(interval(list(held.values())))} % of the samples, mean of {len(held)}"
-                   f" rigs that have one; least {min(held.values()):.1f} %; median width {number(width, '.2f')} JND.")
+                   f" rigs that have one; least {min(held.values()):.1f} %; median width {number(width, '.2f')} JND. By phase: "
+                   + "; ".join(f"{phase} {text(interval(list(some.values())))} ({len(some)} rigs)" for phase in sets[0].phases[0]
+                               if (some := by_rig(sets, results, OURS, lambda test: test["held_in"].get(phase)))) + ".")
 
 
 def front_page(options, folder, parts, kinds, results):
@@ -405,8 +428,9 @@ def main():
     kept = json.loads(options.baselines.read_text()) if options.baselines and options.baselines.exists() else {}
     with tempfile.TemporaryDirectory() as scratch, concurrent.futures.ThreadPoolExecutor(2) as pool:
         folder = pathlib.Path(scratch)
-        real = [Set(*one, folder) for one in recorded(options) if wanted(options, one[0])]
-        made = [Set(*one, folder) for one in virtual(options, folder)] if not options.no_virtual else []
+        os.environ["PALPATE_LIBRARY"] = str(pathlib.Path(options.palpate).resolve().with_name("libpalpate_fit.so"))
+        real = [Set(*one, folder, options.palpate) for one in recorded(options) if wanted(options, one[0])]
+        made = [Set(*one, folder, options.palpate) for one in virtual(options, folder)] if not options.no_virtual else []
         kinds = {kind: sets for kind, sets in ((RECORDED, real), (VIRTUAL, made)) if sets}
         jobs = {(one.name, model): pool.submit(of_model, options, folder, one, model)
                 for one in real + made for model in options.models if f"{one.name}/{model}" not in kept}

@@ -1,4 +1,4 @@
-#include "devices/link/device_endpoint.h"
+#include "devices/link/device_link.h"
 
 #include <algorithm>
 #include <cmath>

@@ -4,7 +4,7 @@
 
 #include "devices/bridge/bridge_bus.h"
 #include "devices/hid/hidapi_bus.h"
-#include "devices/link/device_endpoint.h"
+#include "devices/link/device_link.h"
 #include "devices/virtual/simulated_devices.h"
 #include "engine/base/text.h"
 

@@ -6,6 +6,7 @@
 #include <iterator>
 #include <utility>
 
+#include "engine/base/statistics.h"
 #include "engine/base/text.h"
 #include "engine/import/table_parts.h"
 
@@ -18,8 +19,8 @@ constexpr std::uint64_t kSlowRows = 10;
 constexpr std::size_t kMostReadings = 12;
 // A time that goes back by more steps begins another recording.
 constexpr double kSwappedSteps = 3.0;
-// Two channels with intervals that differ by more are not resampled.
-constexpr double kSameInterval = 1e-3;
+// Two channels are not resampled where the interpolation of the slower one errs by more than this share of its range.
+constexpr double kInterpolationShare = 0.01;
 // The difference of two durations of one recording.
 constexpr double kDurationShare = 0.05, kDuration_s = 2.0;
 
@@ -51,15 +52,19 @@ Error refusal(const std::string& path, const ImportRequest& request, const std::
 // The values of one role at the times of its own clock.
 struct Channel {
   std::vector<double> times_s, values;
+  std::vector<std::uint64_t> lines;
 
   double step_s() const {
     return (times_s.back() - times_s.front()) / static_cast<double>(std::max<std::size_t>(times_s.size() - 1, 1));
   }
-  // Linear interpolation; `after`: the index of the last call, for rising times.
-  double at(double time_s, std::size_t& after) const {
+  // Linear interpolation; `after`: the index of the last call, for rising times. `error`: raised to the error that the
+  // second differences of the values beside allow.
+  double at(double time_s, std::size_t& after, double& error) const {
     while (after + 1 < times_s.size() && times_s[after] < time_s) ++after;
     const double step_s = times_s[after] - times_s[after - 1];
     const double share = step_s > 0.0 ? (time_s - times_s[after - 1]) / step_s : 0.0;
+    for (std::size_t i = std::max<std::size_t>(after, 2); i <= std::min(after + 1, values.size() - 1); ++i)
+      error = std::max(error, share * (1.0 - share) * std::abs(values[i] - 2.0 * values[i - 1] + values[i - 2]));
     return values[after - 1] + share * (values[after] - values[after - 1]);
   }
 };
@@ -295,7 +300,7 @@ class Importer {
     return {};
   }
 
-  // Refuses rows of several series: those that alternate, and those in sequence.
+  // Refuses rows of several series: those that alternate, and those in sequence, unless the user chose the rows.
   Status refuse_series() {
     const auto is_role = [&](std::size_t number) {
       return std::ranges::find(number_, number) != number_.end() || number == fraction_;
@@ -316,8 +321,29 @@ class Importer {
                     (values.size() < column.values.size() ? ", ..." : "") +
                     "), expected one; write the rows of each into a file of its own");
       }
+      if (identifies(column) && !alternates && !request_.rows) return refuse_sequence(i + 1);
     }
     return {};
+  }
+
+  Error refuse_sequence(std::size_t number) {
+    std::vector<Reading> parts;
+    std::string value;
+    LineRange part;
+    for (std::size_t line = block_.begin; line < block_.end; ++line) {
+      if (!is_row(layout_, lines_[line], fields_) || is_empty(number)) continue;
+      if (part.first > 0 && field(number) != value) {
+        parts.push_back(reading_of(part, value));
+        part.first = 0;
+      }
+      value = field(number);
+      part = {part.first > 0 ? part.first : line + 1, line + 1};
+    }
+    parts.push_back(reading_of(part, value));
+    parts.push_back(reading_of({block_.begin + 1, block_.end}, "all as one recording"));
+    return fail("found rows of " + std::to_string(parts.size() - 1) + " series, by column " + std::to_string(number) +
+                    quoted_name(number) + ", expected one; choose the rows",
+                parts);
   }
 
   static Reading reading_of(const LineRange& part, const std::string& meaning) {
@@ -488,9 +514,15 @@ class Importer {
     std::array<std::uint64_t, kRoles> missing{};
     std::uint64_t bad = 0;
     std::optional<Error> fault;
+    // Without a clock every line is a row in time, also an empty one, unless each row has an empty line after it.
+    const bool no_clock = number_[0] == 0 || request_.rate_Hz;
+    const auto empty = std::count_if(lines_.begin() + static_cast<std::ptrdiff_t>(block_.begin),
+                                     lines_.begin() + static_cast<std::ptrdiff_t>(block_.end),
+                                     [](std::string_view line) { return trimmed(line).empty(); });
+    const bool empty_counts = no_clock && static_cast<std::size_t>(empty) + 1 < block_.rows;
     for (std::size_t i = block_.begin; i < block_.end; ++i) {
       const std::string_view line = lines_[i];
-      if (trimmed(line).empty()) continue;
+      if (trimmed(line).empty() && !empty_counts) continue;
       if (line.starts_with('#')) {
         leave_out("comments", i + 1);
         continue;
@@ -515,7 +547,7 @@ class Importer {
         leave_out(in_time ? "unreadable" : "text between the rows", i + 1);
         if (bad++ == 0) fault = unreadable(i + 1, line, !position_m ? number_[1] : !force_N ? number_[2] : number_[0]);
       }
-      if (in_time || row.good) rows_.push_back(row);
+      if (in_time || row.good || no_clock) rows_.push_back(row);
     }
     for (std::size_t i = block_.end; i < lines_.size() && !is_row(layout_, lines_[i], fields_); ++i)
       if (!trimmed(lines_[i]).empty() && layout_.blocks.size() == 1) leave_out("text after the table", i + 1);
@@ -592,8 +624,9 @@ class Importer {
     return has_two_clocks() ? Status() : compare_clocks();
   }
 
-  // The times of another column, in seconds since its first one; empty without a known unit.
-  std::vector<double> times_of(std::size_t number, bool& whole) const {
+  // The times of another column, in seconds since its first one, which is put into `first_s`; empty without a known
+  // unit.
+  std::vector<double> times_of(std::size_t number, bool& whole, double& first_s) const {
     const Fields cells = cells_of(number);
     RowTimes times;
     if (!times.examine(cells, layout_.decimal)) return {};
@@ -602,6 +635,7 @@ class Importer {
                         : unit && unit->quantity == Quantity::time ? unit->to_si
                                                                    : to_si_[0];
     whole = times.are_of_a_clock() && times.are_whole_seconds();
+    first_s = to_s * times.first_cell();
     std::vector<double> seconds;
     for (const std::string_view cell : cells) {
       const auto time = times.since_first(cell);
@@ -620,7 +654,8 @@ class Importer {
     const double step_s = to_si_[0] * times_.median_step();
     for (const std::size_t other : others) {
       bool whole = false;
-      const std::vector<double> seconds = times_of(other, whole);
+      double first_s = 0.0;
+      const std::vector<double> seconds = times_of(other, whole, first_s);
       if (seconds.size() != rows_.size()) continue;
       // A clock with hours and minutes may be that of the arrival; its duration must be that of the times.
       const bool rival = !columns_[other - 1].is_clock || times_.are_of_a_clock();
@@ -674,42 +709,85 @@ class Importer {
   Status resample() {
     std::array<Channel, kRoles> channels;
     const auto clocks = clock_columns();
-    std::array<std::vector<double>, kRoles> seconds;
-    bool whole = false;
-    for (const std::size_t role : {1u, 2u})
-      if (layout_.steps_s.empty()) seconds[role] = times_of(clocks[role], whole);
     for (const std::size_t role : {1u, 2u}) {
+      bool whole = false;
+      double first_s = lab(layout_.starts_s, role);
+      std::vector<double> seconds;
+      if (layout_.steps_s.empty()) seconds = times_of(clocks[role], whole, first_s);
+      Channel& channel = channels[role];
       std::size_t place = 0;
       for (std::size_t line = block_.begin; line < block_.end; ++line) {
         if (!is_row(layout_, lines_[line], fields_)) continue;
-        const double time_s = layout_.steps_s.empty() ? seconds[role][place]
-                                                      : lab(layout_.starts_s, role) +
-                                                            static_cast<double>(place) * lab(layout_.steps_s, role);
+        const double since_s =
+            layout_.steps_s.empty() ? seconds[place] : static_cast<double>(place) * lab(layout_.steps_s, role);
         ++place;
         const auto value = value_of(role);
-        if (!value || !std::isfinite(time_s)) continue;
-        channels[role].times_s.push_back(time_s);
-        channels[role].values.push_back(*value);
+        if (!value || !std::isfinite(since_s)) continue;
+        if (!channel.times_s.empty() && !(first_s + since_s > channel.times_s.back()))
+          return fail_at(line + 1, "found a time of the " + std::string(kRoleNames[role]) +
+                                       " that is not later than that above, expected later times in every row");
+        channel.times_s.push_back(first_s + since_s);
+        channel.values.push_back(*value);
+        channel.lines.push_back(line + 1);
       }
-      if (channels[role].values.size() < 2) return fail("found no values of the " + std::string(kRoleNames[role]));
+      if (channel.values.size() < 2) return fail("found no values of the " + std::string(kRoleNames[role]));
     }
-    const double position_s = channels[1].step_s(), force_s = channels[2].step_s();
-    const std::string found = "found two clocks, with a position every " + short_number(position_s) + " s from " +
-                              short_number(channels[1].times_s.front()) + " s on and a force every " +
-                              short_number(force_s) + " s from " + short_number(channels[2].times_s.front()) + " s on";
-    if (std::abs(position_s / force_s - 1.0) > kSameInterval)
-      return fail(found + ", expected one interval; export both channels with one");
-    note("warning: " + found + ": the position is interpolated at the times of the force");
+    const std::size_t slow = channels[1].step_s() >= channels[2].step_s() ? 1 : 2, fast = 3 - slow;
+    const std::string slow_name = kRoleNames[slow], fast_name = kRoleNames[fast];
+    const double begin_s = std::min(channels[1].times_s.front(), channels[2].times_s.front());
+    const auto words = [&](std::size_t role) {
+      return std::string(kRoleNames[role]) + " every " + short_number(channels[role].step_s()) + " s from " +
+             short_number(channels[role].times_s.front() - begin_s) + " s on";
+    };
+    const std::string found = "found two clocks, with a " + words(1) + " and a " + words(2);
     std::vector<RecordingRow>& rows = table_.recording.rows;
-    std::size_t after = 1;
-    for (std::size_t i = 0; i < channels[2].values.size(); ++i) {
-      const double time_s = channels[2].times_s[i];
-      if (time_s < channels[1].times_s.front() - 1e-9 || time_s > channels[1].times_s.back() + 1e-9) continue;
-      rows.push_back({time_s, channels[1].at(time_s, after), channels[2].values[i]});
-    }
     table_.left_out.clear();
-    table_.columns[0] = {clocks[1], layout_.names.empty() || clocks[1] == 0 ? "" : columns_[clocks[1] - 1].header,
+    std::size_t after = 1;
+    double error = 0.0;
+    const Channel &own = channels[fast], &other = channels[slow];
+    for (std::size_t i = 0; i < own.values.size(); ++i) {
+      const double time_s = own.times_s[i];
+      if (time_s < other.times_s.front() - 1e-9 || time_s > other.times_s.back() + 1e-9) {
+        leave_out(slow == 1 ? "without a position at the time" : "without a force at the time", own.lines[i]);
+        continue;
+      }
+      const double between = other.at(time_s, after, error);
+      rows.push_back({time_s - begin_s, slow == 1 ? between : own.values[i], slow == 1 ? own.values[i] : between});
+    }
+    const auto [low, high] = std::ranges::minmax(other.values);
+    if (error > kInterpolationShare * (high - low))
+      return fail(found + ", expected one, or a " + slow_name +
+                  " that is fast enough to be interpolated; export both channels with one interval");
+    note("warning: " + found + ": the " + slow_name + " is interpolated at the times of the " + fast_name);
+    table_.columns[0] = {clocks[fast],
+                         layout_.names.empty() || clocks[fast] == 0 ? "" : columns_[clocks[fast] - 1].header,
                          std::string(table_.columns[0].unit)};
+    return {};
+  }
+
+  // The place of each row in time by a column that counts the rows and skips some; empty: there is none.
+  std::vector<double> counted_places() {
+    for (std::size_t i = 0; i < columns_.size(); ++i) {
+      const ForeignColumn& column = columns_[i];
+      if (!column.is_whole || column.changes + 1 < rows_.size() || std::ranges::count(number_, i + 1) > 0) continue;
+      std::vector<double> places, steps;
+      double value = 0.0;
+      for (const std::string_view cell : cells_of(i + 1))
+        if (parse_table_number(cell, layout_.decimal, value)) places.push_back(value);
+      for (std::size_t k = 1; k < places.size(); ++k) steps.push_back(places[k] - places[k - 1]);
+      if (places.size() != rows_.size() || steps.size() < kSlowRows) continue;
+      const double step = nth_smallest(steps, steps.size() / 2), first = places.front();
+      double gaps = 0.0;
+      const bool counts = step > 0.0 && std::ranges::all_of(steps, [&](double one) {
+                            gaps += one / step - 1.0;
+                            return one >= step && std::fmod(one, step) == 0.0;
+                          });
+      if (!counts || gaps == 0.0) continue;
+      for (double& place : places) place = (place - first) / step;
+      note("warning: column " + std::to_string(i + 1) + quoted_name(i + 1) + " counts the rows and skips " +
+           short_number(gaps) + " of them: the others keep their times");
+      return places;
+    }
     return {};
   }
 
@@ -752,9 +830,11 @@ class Importer {
       }
     }
     auto& rows = table_.recording.rows;
+    const std::vector<double> places = !copies_left ? counted_places() : std::vector<double>{};
     for (std::size_t place = 0; place < rows_.size(); ++place) {
       RecordingRow row = rows_[place].row;
-      row.time_s = rate_Hz > 0.0 ? static_cast<double>(place) / rate_Hz : rows_[place].own_s.value_or(0.0);
+      const double at = places.empty() ? static_cast<double>(place) : places[place];
+      row.time_s = rate_Hz > 0.0 ? at / rate_Hz : rows_[place].own_s.value_or(0.0);
       if (!rows_[place].good) continue;
       if (!rows.empty() && row.time_s == rows.back().time_s) {
         leave_out("with the time of the row above", rows_[place].line);

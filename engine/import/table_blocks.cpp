@@ -181,7 +181,8 @@ class BlockFinder {
     if (trimmed(line).empty() || line.starts_with('#')) return Kind::blank;
     fields_now_ = split_table_fields(line, layout_.delimiter, fields_);
     const FieldCount count = count_fields(fields_, layout_.decimal);
-    if (is_row(layout_, line, fields_)) return Kind::row;
+    // A row without any value does not begin a table.
+    if (is_row(layout_, line, fields_)) return count.numbers > 0 || open_ ? Kind::row : Kind::text;
     if (!layout_.first_is_word && !fields_.empty() && is_word(fields_.front())) return Kind::text;  // "Samples;1200"
     return count.is_row() || count.is_number() ? Kind::other : Kind::text;
   }
@@ -242,7 +243,8 @@ class BlockFinder {
 bool is_row(const TableLayout& layout, std::string_view line, Fields& fields) {
   const std::size_t count = split_table_fields(line, layout.delimiter, fields);
   const FieldCount numbers = count_fields(fields, layout.decimal);
-  if (numbers.numbers == 0 || numbers.numbers + numbers.missing == numbers.clocks) return false;
+  if (numbers.numbers == 0) return count == layout.fields && numbers.missing >= 2 && numbers.words == 0;
+  if (numbers.numbers + numbers.missing == numbers.clocks) return false;
   if (!layout.first_is_word && !fields.empty() && count_fields({fields.front()}, layout.decimal).words > 0)
     return false;
   if (count < layout.fields) return false;
@@ -258,7 +260,6 @@ Result<TableLayout> find_table_layout(const std::vector<std::string_view>& lines
   for (const Delimiter& delimiter : kDelimiters) {
     for (const char decimal : {'.', ','}) {
       if (given_decimal && *given_decimal != decimal) continue;
-      if (delimiter.name == "comma" && decimal == ',') continue;
       const Marks marks = read_as(lines, delimiter, decimal);
       if (marks.numbers > 0 && (best.numbers == 0 || marks.better_than(best))) best = marks;
     }

@@ -33,8 +33,8 @@ struct Delimiter {
   bool is_blanks() const noexcept { return marks.size() > 1; }
 };
 // In the order in which they are tried.
-inline constexpr std::array kDelimiters = {Delimiter{"tab", "\t"}, Delimiter{"semicolon", ";"}, Delimiter{"comma", ","},
-                                           Delimiter{"blanks", " \t"}};
+inline constexpr std::array kDelimiters = {Delimiter{"tab", "\t"}, Delimiter{"semicolon", ";"}, Delimiter{"bar", "|"},
+                                           Delimiter{"comma", ","}, Delimiter{"blanks", " \t"}};
 using Fields = std::vector<std::string_view>;
 // The fields of one line without blanks and quotes around them. `fields` is replaced; empty fields at the end of the
 // line are omitted. Returns the number of fields with these.

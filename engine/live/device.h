@@ -172,6 +172,7 @@ inline constexpr double kNoForce = std::numeric_limits<double>::quiet_NaN();
 // was computed. 0: the device is read and written in the tick itself; NaN: not known.
 struct ForceAge {
   double least_s = 0.0, largest_s = 0.0;
+  double middle_s() const noexcept { return 0.5 * (least_s + largest_s); }
 };
 
 // One sample of a device.

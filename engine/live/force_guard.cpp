@@ -37,10 +37,12 @@ double PassivityController::energy_when_passed(double depth_m) noexcept {
 // The mean since the last sample of the force that was written a delay ago. Assuming too large a lag
 // makes the debt during unloading larger, never smaller.
 double PassivityController::arrived_N(const Tool& tool, const Timing& timing, double written_N) noexcept {
-  written_N_[ticks_ % kMostUnderWay] = written_N;
-  const double most = static_cast<double>(std::min(ticks_, kMostUnderWay - 1));
-  const auto ago = static_cast<std::size_t>(std::clamp(std::round(timing.delay_s / timing.tick_s), 0.0, most));
-  arrived_N_ += written_N_[(ticks_ - ago) % kMostUnderWay];
+  time_s_ += timing.step_s;
+  written_[ticks_ % kMostUnderWay] = {time_s_, written_N};
+  const double latest_s = time_s_ - timing.delay_s + 0.5 * timing.tick_s;
+  std::size_t ago = 0;
+  while (ago < std::min(ticks_, kMostUnderWay - 1) && written_[(ticks_ - ago) % kMostUnderWay].time_s > latest_s) ++ago;
+  arrived_N_ += written_[(ticks_ - ago) % kMostUnderWay].force_N;
   ++ticks_;
   ++arrivals_;
   const double mean_N = arrived_N_ / arrivals_;

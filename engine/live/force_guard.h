@@ -8,7 +8,7 @@
 // of B that the passivity controller provides. b and c are those of the simulation in
 // tests/accuracy/closed_loop_link_test.cpp: over rates, groups, delays and jitter, the lightest hand (50 g, 2.2 N s/m)
 // keeps still within 0.35 mm up to K T = 2.1 N s/m + 0.46 B, with encoder steps up to 30 um; the limit is 0.85 of that.
-// A coarser encoder is not covered: the controller has a play of one step.
+// The controller has a play of one step, so that c goes to 0 with coarser ones; at 0.1 mm such a hand may swing by 0.7.
 // B limits the sum of the damping of model and user, and that of user and controller.
 //
 // Passivity controller (Hannaford & Ryu 2002; Ryu et al. 2004 for a reference that follows the depth). A late force is
@@ -97,46 +97,42 @@ struct Impedance {
   double stiffness_N_per_m = 0.0, damping_Ns_per_m = 0.0;
 };
 
-// The delay T of the loop: halfway between the least and the largest age of the force that acted within 1/16 s, the
-// largest such value of the last second. Thus it includes transport, waits, and half the time for which a force is
-// held, however samples and commands are grouped. The largest counts, not the mean, because one late group is enough to
-// start an oscillation.
+// The delay T of the loop: the mean age of the forces that acted within 1/16 s, the largest such mean of the last
+// second. Thus it includes transport, waits, and half the time for which a force is held, however samples and commands
+// are grouped. The largest counts, because a group that is late from time to time is enough to start an oscillation; of
+// means, because the extremes of a link with jitter differ from second to second, and the force would with them.
 class LoopDelay {
  public:
   // `time_s` does not decrease. O(1).
   void add(const ForceAge& age, double time_s) noexcept {
     move_to(time_s);
     Ages& part = parts_[part_ % kParts];
-    part.least_s = std::min(part.least_s, age.least_s);
-    part.largest_s = std::max(part.largest_s, age.largest_s);
+    part.sum_s += age.middle_s();
+    part.count += 1.0;
   }
   void move_to(double time_s) noexcept {
-    const auto part = static_cast<std::int64_t>(time_s * static_cast<double>(kParts - 1));
-    for (std::int64_t i = std::max(part_ + 1, part - kParts + 1); i <= part; ++i) parts_[i % kParts] = {};
+    const auto part = static_cast<std::size_t>(std::max(0.0, time_s) * static_cast<double>(kParts - 1));
+    for (std::size_t i = std::max(part_ + 1, part < kParts ? 0 : part - kParts + 1); i <= part; ++i)
+      parts_[i % kParts] = {};
     part_ = std::max(part_, part);
   }
   // 0: nothing was added in the last second.
-  double largest_s() const noexcept {
-    double largest_s = 0.0;
-    for (const Ages& part : parts_) largest_s = std::max(largest_s, part.largest_s);
-    return largest_s;
-  }
   double delay_s() const noexcept {
     double delay_s = 0.0;
     // The present part is not complete.
-    for (std::int64_t i = 1; i < kParts; ++i) delay_s = std::max(delay_s, parts_[(part_ + i) % kParts].middle_s());
-    return delay_s > 0.0 ? delay_s : parts_[part_ % kParts].middle_s();
+    for (std::size_t i = 1; i < kParts; ++i) delay_s = std::max(delay_s, parts_[(part_ + i) % kParts].mean_s());
+    return delay_s > 0.0 ? delay_s : parts_[part_ % kParts].mean_s();
   }
 
  private:
   struct Ages {
-    double least_s = std::numeric_limits<double>::infinity(), largest_s = 0.0;
-    double middle_s() const noexcept { return largest_s > 0.0 ? 0.5 * (least_s + largest_s) : 0.0; }
+    double sum_s = 0.0, count = 0.0;
+    double mean_s() const noexcept { return count > 0.0 ? sum_s / count : 0.0; }
   };
-  static constexpr std::int64_t kParts = 17;
+  static constexpr std::size_t kParts = 17;
 
   std::array<Ages, kParts> parts_{};
-  std::int64_t part_ = 0;
+  std::size_t part_ = 0;
 };
 
 class StabilityLimit {
@@ -144,6 +140,10 @@ class StabilityLimit {
   static constexpr double kLightestHand_kg = 0.05;      // m, a finger on which a tool rests
   static constexpr double kHandDamping_Ns_per_m = 1.8;  // b; relaxed fingers have more (Hajian & Howe 1997)
   static constexpr double kShareOfDamping = 0.38;       // c
+  static constexpr double kFine_m = 30e-6, kCoarse_m = 100e-6;
+  explicit StabilityLimit(double encoder_step_m = 0.0) noexcept
+      : share_(kShareOfDamping * std::clamp((kCoarse_m - encoder_step_m) / (kCoarse_m - kFine_m), 0.0, 1.0)) {}
+
   // Follows the current delay with a time constant of 0.1 s where it grows and 2 s where it falls, because an
   // increase of stiffness during a press adds energy. The first call takes it at once; before it nothing is limited.
   void update(double lag_s, double step_s) noexcept {
@@ -153,9 +153,7 @@ class StabilityLimit {
 
   double lag_s() const noexcept { return lag_s_; }
   double damping_Ns_per_m() const noexcept { return 0.5 * kLightestHand_kg / lag_s_; }
-  double stiffness_N_per_m() const noexcept {
-    return (kHandDamping_Ns_per_m + kShareOfDamping * damping_Ns_per_m()) / lag_s_;
-  }
+  double stiffness_N_per_m() const noexcept { return (kHandDamping_Ns_per_m + share_ * damping_Ns_per_m()) / lag_s_; }
   // The largest stable factor of a force with this impedance.
   double largest_scale(const Impedance& of) const noexcept {
     return std::min(stiffness_N_per_m() / std::max(of.stiffness_N_per_m, kNone),
@@ -164,7 +162,7 @@ class StabilityLimit {
 
  private:
   static constexpr double kRise_s = 0.1, kFall_s = 2.0, kNone = 1e-9;
-  double lag_s_ = 0.0;
+  double share_, lag_s_ = 0.0;
 };
 
 // The scale that the user wants for the force of the active model, and additional damping:
@@ -204,7 +202,7 @@ class PassivityController {
     double delay_s = 0.0;           // the least delay of the loop, for what it cannot measure itself
   };
 
-  // Once a tick, before the limiter. `timing.delay_s`: from a sample to the end of its force, at most 63 ticks.
+  // Once a tick, before the limiter. `timing.delay_s`: the age of the force that acted, at most 63 ticks.
   // `damping_Ns_per_m`: the most that it may render. `written_N`: the device's force in the last tick. Returns
   // at most `commanded_N`, never less than 0 if that is positive; not finite if it is not finite.
   double apply(double commanded_N, const Tool& tool, const Timing& timing, double damping_Ns_per_m,
@@ -231,9 +229,13 @@ class PassivityController {
   std::array<Passed, kMostPassed> passed_{};
   std::size_t count_ = 1;
   double energy_J_ = 0.0, debt_J_ = 0.0;
-  double depth_m_ = 0.0;                           // in the last tick, with the play
-  std::array<double, kMostUnderWay> written_N_{};  // ring of the last ticks
+  double depth_m_ = 0.0;  // in the last tick, with the play
+  struct Written {
+    double time_s = 0.0, force_N = 0.0;
+  };
+  std::array<Written, kMostUnderWay> written_{};  // ring of the last ticks
   std::size_t ticks_ = 0;
+  double time_s_ = 0.0;
   double arrived_N_ = 0.0;  // sum over the ticks since the last sample
   int arrivals_ = 0;
   double hold_s_ = 0.0, since_sample_s_ = 0.0;  // between the last two samples, and since the last one
@@ -246,21 +248,31 @@ class ForceGuard {
   using Tool = PassivityController::Tool;
   using Timing = PassivityController::Timing;
 
-  explicit ForceGuard(double encoder_step_m) noexcept : passivity_(encoder_step_m) {}
+  explicit ForceGuard(double encoder_step_m) noexcept : stability_(encoder_step_m), passivity_(encoder_step_m) {}
 
   // For every sample, before `scaled` of the same tick.
   void acted(const ForceAge& age, double tick_s = kHapticTick_s) noexcept {
     const double since_s = time_s_ - std::exchange(sampled_s_, time_s_);
     // A force that is written in a tick acts from the next tick on at the latest, until the next sample is used.
-    if (age.largest_s == 0.0 && since_s > 0.0) delay_.add({tick_s, since_s + tick_s}, time_s_);
-    if (age.least_s > 0.0) delay_.add(age, time_s_);
+    const bool known = age.largest_s >= 0.0;
+    // A force whose delay nobody knows drives a hand, whatever the model.
+    waits_ = waits_ && !known;
+    if (!known || !(age.largest_s > 0.0 || since_s > 0.0)) return;
+    acted_ = age.largest_s > 0.0 ? age : ForceAge{tick_s, since_s + tick_s};
+    delay_.add(acted_, time_s_);
   }
 
   // The force of a model of this impedance, scaled as `wanted`; the scale moves there with a time constant of 50 ms.
-  // `held`: by a person, so that the stability limit applies. With the default scale the force stays bit-identical.
+  // `held`: by a person, so that the stability limit applies, and there is no force before the first age is known. With
+  // the default scale the force stays bit-identical.
   double scaled(double force_N, const Impedance& model, const ForceScale& wanted, bool held, const Tool& tool,
                 const Timing& timing) noexcept {
     time_s_ += timing.step_s;
+    if (held && waits_) {
+      scale_ = {0.0, 0.0};
+      share_ = 0.0;
+      return 0.0;
+    }
     delay_.move_to(time_s_);
     stability_.update(std::max({delay_.delay_s(), 1.5 * timing.tick_s, timing.delay_s}), timing.step_s);
     const ForceScale unbounded = wanted.limited(StabilityLimit(), {});
@@ -276,8 +288,7 @@ class ForceGuard {
   // After `scaled`. `written_N`: the device's last force.
   double passive(double commanded_N, const Tool& tool, const Timing& timing, double written_N) noexcept {
     const double left_Ns_per_m = std::max(0.0, stability_.damping_Ns_per_m() - scale_.damping_Ns_per_m);
-    const Timing known{timing.step_s, timing.tick_s,
-                       std::max(delay_.largest_s(), timing.delay_s + 0.5 * timing.tick_s)};
+    const Timing known{timing.step_s, timing.tick_s, std::max(acted_.middle_s(), timing.delay_s + 0.5 * timing.tick_s)};
     return passivity_.apply(commanded_N, tool, known, left_Ns_per_m, written_N);
   }
 
@@ -291,10 +302,12 @@ class ForceGuard {
     if (std::abs(wanted - value) < kArrived) value = wanted;
   }
 
+  ForceAge acted_;  // of the force that acted before the last sample
   LoopDelay delay_;
   StabilityLimit stability_;
   ForceScale scale_;  // of the present force
   PassivityController passivity_;
+  bool waits_ = true;  // for the first age
   double share_ = 1.0, time_s_ = 0.0;
   double sampled_s_ = std::numeric_limits<double>::infinity();  // time of the last sample; none
 };

@@ -85,11 +85,12 @@ double surface_position_m(const std::vector<FeatureSpec>& specs) noexcept;
 // Column name with unit, e.g. "feature_depth_m", "feature_lowpass_velocity_0.17s_m_per_s".
 std::string feature_name(const FeatureSpec& spec);
 
-// The beginning and the end of a training recording, in positions as recorded, and the memory of the features at the
-// end: in their order the value of a low-pass, N of each branch, m of each bristle.
+// The beginning and the end of a training recording, positions and force as recorded, and the memory of the features at
+// the end: in their order the value of a low-pass, N of each branch, m of each bristle.
 struct RecordingEnds {
   double first_position_m = 0.0, last_position_m = 0.0;
   std::vector<double> memory;
+  double first_force_N = 0.0;
 
   bool operator==(const RecordingEnds&) const = default;
 };

@@ -15,7 +15,7 @@ namespace palpate {
 struct ForceEstimate {
   double force_N = 0.0;
   // The feature vector is outside the domain of the training data, where the force is mainly that of the trend
-  // (models/model/domain_guard.h).
+  // (models/model/fitted_model.h).
   bool out_of_domain = false;
   // 95 % bound on the error of the force, N; NaN if the model has none (models/model/fitted_model.h).
   double predicted_error_N = std::numeric_limits<double>::quiet_NaN();

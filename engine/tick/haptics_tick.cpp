@@ -211,8 +211,10 @@ ForceEstimate HapticsTick::assessed(std::size_t index) const noexcept {
   if (!started_) return {};
   const ForceModel& model = *models_[index];
   const FeatureState& state = filters_[filter_of_[index]].state();
-  ForceEstimate estimate{snapshot_.force_N[index], false, 0.0};
-  if (snapshot_.in_contact) {
+  ForceEstimate estimate{snapshot_.force_N[index]};
+  if (!snapshot_.in_contact) {
+    estimate.predicted_error_N = 0.0;  // in air every model returns 0 N with certainty
+  } else {
     model.assess(state.vector.values.data(), estimate);
     // The unknown memory of the material.
     double unknown_N = 0.0;

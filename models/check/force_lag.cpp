@@ -24,7 +24,7 @@ constexpr double kNearLag_s = 0.05;  // searched in fine steps, and by every row
 constexpr double kFarStep_s = 0.04;
 constexpr std::size_t kFarStride = 4;
 // A longer lag is searched for where it lowers the cost to this share.
-constexpr double kFarGain = 0.7;
+constexpr double kFarGain = 0.5;
 constexpr double kCoarse_s = 0.005;  // between lags, and at least between rows
 constexpr double kFine_s = 0.2e-3;
 // The required accuracy: a lag with two standard errors above it is not identified; lags that differ by at most this
@@ -208,6 +208,10 @@ OffsetEstimate find_force_lag(const std::vector<Sample>& rows, double force_nois
   (far_s < 0.0 ? low_s : high_s) += far_s < 0.0 ? std::min(0.0, far_s) : far_s;
   OffsetEstimate lag = estimate_offset([&](double lag_s) { return regression.costs(lag_s); },
                                        {low_s, high_s, kCoarse_s, kFine_s, kAccuracy_s, kAccuracy_s});
+  // A long lag that the blocks disagree on by more is still one, within a step of the far search.
+  if (!lag.identified && far_s != 0.0)
+    lag = {std::abs(lag.minimum_at - far_s) <= kFarStep_s ? lag.minimum_at : far_s, true, 0.5 * kFarStep_s, true,
+           far_s};
   // A force that is read once a row is late by anything up to the interval of the rows, evenly distributed.
   lag.standard_error = std::hypot(lag.standard_error, step_s / std::sqrt(12.0));
   if (std::abs(lag.at) < kSignificantErrors * lag.standard_error) lag.at = 0.0;

@@ -19,15 +19,15 @@
 #include "models/correction/methods.h"
 #include "models/correction/sites.h"
 #include "models/model/kernels.h"
-#include "models/trend/trend_columns.h"
+#include "models/trend/trend_estimator.h"
 
 namespace palpate {
 
 // What the method is fitted to: the measured force, or the residual of the trend.
 enum class Base : std::uint8_t { force, trend };
 
-// The features: automatic (with the trend, those of the dictionary of models/trend/trend_columns.h that the regression
-// weights; with the force, the scene's with two identified relaxation times), those of the scene, or a list.
+// The features: automatic (with the trend, those of the dictionary of models/trend/trend_estimator.h that the
+// regression weights; with the force, the scene's with two identified relaxation times), those of the scene, or a list.
 enum class FeatureChoice : std::uint8_t { automatic, scene, given };
 
 // The time to select centres grows with the square of their number, to half a minute at this limit. The method

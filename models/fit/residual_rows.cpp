@@ -15,7 +15,7 @@
 #include "models/correction/algebra.h"
 #include "models/linear/lapack.h"
 #include "models/model/correction.h"
-#include "models/model/domain_guard.h"
+#include "models/model/fitted_model.h"
 #include "models/model/kernels.h"
 
 namespace palpate {

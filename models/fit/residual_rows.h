@@ -37,7 +37,7 @@ struct ResidualRows {
   // The force at row `i` from the other folds, as FittedModel computes it but without the upper limit, with this inner
   // radius of the trust. `h`: the correction, N.
   double predicted_N(const ModelData& common, std::size_t i, double inner_radius, double h) const;
-  // The sites of a fit without a fold, at most 1500. The targets are the residuals of the trend without that fold.
+  // The sites of a fit without a fold, at most 1000. The targets are the residuals of the trend without that fold.
   Sites sites_without(int without, double smoothing) const;
   // Sets `distance`.
   void find_distances();

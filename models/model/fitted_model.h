@@ -1,14 +1,16 @@
 // A fitted force model: its data, and the ForceModel that evaluates them.
 //   f(x) = clamp( T(x) + g(u) clamp(h(u), -limit, limit), lowest, largest ),   u = (x - offset) / scale
-// T: the trend (models/model/trend.h). h: the correction (models/model/correction.h): eq. 2 of Hoever & Harders (2009),
-// a grid of its values, or none. g: the trust (models/model/domain_guard.h). Out of its domain a model is thus the
+// T: the trend. h: the correction (models/model/correction.h): eq. 2 of Hoever & Harders (2009),
+// a grid of its values, or none. g: the trust. Out of its domain a model is thus the
 // trend: continuous, bounded, and attracting the tool at most as much as the material did. A model of the measured
 // force has T = 0 and g = 1 everywhere. Thread guarantee: FittedModel is immutable; evaluation as in ForceModel.
 #pragma once
 
 #include <Eigen/Core>
+
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -17,14 +19,142 @@
 #include <vector>
 
 #include "engine/base/result.h"
+#include "engine/tick/features.h"
 #include "engine/tick/force_model.h"
 #include "engine/tick/jnd.h"
 #include "engine/tick/tool_sample.h"
 #include "models/model/correction.h"
-#include "models/model/domain_guard.h"
-#include "models/model/trend.h"
+#include "models/model/vector_loops.h"
 
 namespace palpate {
+
+// The trend, a nonlinear viscoelastic solid fitted to the recordings; away from the data it is the model.
+//   T(x) = E(d) + eta(d) v + mu(d) v / (1 + |v| / v_0) + sum_b z_b + sum_k y_k
+// d: depth, v: velocity, z_b: force of a Maxwell spectrum, y_k: force of stops and creeping bristles; all are features
+// (engine/tick/features.h). E increases with depth, and eta, mu and the stiffnesses of branches and bristles are not
+// negative, so that the trend is passive. v is clamped to velocity_limit.
+// Thread guarantee: value types; `at` is wait-free and allocates nothing.
+
+// Enough for a force that grows thirty-fold in the last tenth of the depth. The penalty determines the smoothness.
+inline constexpr std::size_t kElasticPieces = 32;
+inline constexpr std::size_t kElasticCoefficients = 4;  // of a piece
+
+inline constexpr std::size_t kViscosityCoefficients = 3;
+
+// The source text that exported models share with the library.
+namespace trend_equation {
+using real = double;
+using motion_filter::larger;
+using motion_filter::smaller;
+static_assert(kViscosityCoefficients == 3 && kElasticCoefficients == 4);
+#define R(x) (x)
+#define ELASTIC_PIECES kElasticPieces
+#include "models/model/trend.inc"
+#undef ELASTIC_PIECES
+#undef R
+}  // namespace trend_equation
+
+// The elastic response, a cubic spline on equal pieces of the recorded depth,
+//   E(u) = sum_j c_ij t^j,  i = floor(n u),  t = n u - i,  n = kElasticPieces,
+// with u = depth / reference depth >= 0. Beyond u = 1 it continues along its tangent there. An evaluation takes one
+// look-up and one polynomial, independent of the number of pieces.
+struct ElasticSpline {
+  // The coefficients of t^0 to t^3 of every piece, N.
+  std::array<double, kElasticPieces * kElasticCoefficients> pieces_N{};
+
+  double at(double u) const noexcept { return trend_equation::elastic_at(pieces_N.data(), u); }
+  bool operator==(const ElasticSpline&) const = default;
+};
+
+// The kElasticTerms basis splines are the integrals from 0 to u of the quadratic B-splines on the pieces. E therefore
+// increases if all weights, in newtons, are non-negative. With a penalty on the differences of neighbouring weights it
+// is a P-spline (Eilers & Marx 1996).
+inline constexpr std::size_t kElasticTerms = kElasticPieces + 2;
+std::vector<ElasticSpline> spline_basis();
+ElasticSpline combined_spline(const std::vector<ElasticSpline>& basis, const double* weights);
+
+// The indices of the trend's inputs among the features, determined once outside the tick.
+struct TrendInputs {
+  explicit TrendInputs(const std::vector<FeatureSpec>& specs) noexcept;
+
+  static constexpr std::uint8_t kNone = 255;
+  std::uint8_t depth = kNone;
+  std::uint8_t velocity = kNone;
+  std::uint8_t force_count = 0;
+  std::array<std::uint8_t, kMaxFeatures> force{};  // indices of features that are forces, ascending
+};
+
+struct Trend {
+  double reference_depth_m = 1.0;  // greatest recorded depth; u = d / reference_depth_m
+  ElasticSpline elastic;           // E
+  std::array<double, kViscosityCoefficients> viscosity_Ns_per_m{};  // eta = sum c_k u^k, u <= 1
+  std::array<double, kViscosityCoefficients> thinning_Ns_per_m{};   // mu, in the same way
+  double thinning_velocity_m_per_s = 1.0;                           // v_0
+  double velocity_limit_m_per_s = 0.0;
+
+  // T(x) in newtons, of any sign. `inputs`, or `specs`: of the list of features.
+  double at(const double* features, const TrendInputs& inputs) const noexcept;
+  double at(const double* features, const std::vector<FeatureSpec>& specs) const noexcept {
+    return at(features, TrendInputs(specs));
+  }
+};
+
+// The distance of a feature vector from the data of a model, and the trust in the correction there. The domain is the
+// neighbourhood of the recorded samples in the normalised feature space, not their bounding box, which is mostly empty.
+// The guard stores the cover, a thinned set of the sites that has every site well within inner_radius, and gives the
+// trust g(x): 1 for distance <= inner_radius, 0 for distance >= outer_radius, smoothstep between, with slope at most
+// 1.5 / (outer - inner). Points are compared in single precision; the error of a distance is at most
+// 3e-7 (|x| + largest |point|) + 1e-10.
+// Thread guarantee: immutable; queries are wait-free and allocate nothing, any thread.
+
+inline constexpr Eigen::Index kMaximumCoverPoints = 768;
+
+struct DomainCover {
+  Eigen::MatrixXd points;  // d x M, normalised
+  double inner_radius = 0.0, outer_radius = 0.0;
+};
+
+// The trust g at a distance from the cover.
+double trust_at_distance(double distance, double inner_radius, double outer_radius) noexcept;
+
+// Thins `sites` (d x N, N >= 1) to a cover of at most kMaximumCoverPoints points.
+DomainCover make_cover(const Eigen::MatrixXd& sites);
+
+// The distance of a query to the nearest of a set of points, which are in cells. A query first examines the cell of the
+// last one, so that one in a stream of ticks seldom examines another; the result does not depend on that.
+class NearestDistance {
+ public:
+  // `points`: d x N, d from 1 to kMaxFeatures, N >= 1.
+  explicit NearestDistance(const Eigen::MatrixXd& points);
+
+  // min_i |x - point_i|^2, or 0 if that is at most `enough`; infinite when x is not finite or has a coordinate beyond
+  // 1e19. O(N) at worst.
+  double squared(const double* x, float enough = -1.0F) const noexcept;
+
+ private:
+  std::size_t dimension_;
+  Eigen::MatrixXf points_, low_, high_;  // of simd::Cells
+  decltype(simd::Loops::nearest) nearest_ = nullptr;
+  mutable std::atomic<std::uint32_t> last_cell_{0};  // a hint
+};
+
+// The trust around a cover.
+class DomainGuard {
+ public:
+  explicit DomainGuard(const DomainCover& cover);
+
+  // `x`: d normalised values. Returns g in [0, 1]; 0 when x is not finite.
+  double trust(const double* x) const noexcept { return trust_at(squared_distance(x)); }
+  // The squared distance to the cover; 0 within the inner radius, where the trust is 1 and the error bound does not
+  // grow; infinite when x is not finite.
+  double squared_distance(const double* x) const noexcept { return points_.squared(x, near_squared_); }
+  double trust_at(double squared_distance) const noexcept;
+
+ private:
+  double inner_radius_, outer_radius_;
+  float near_squared_;  // at most the square of the inner radius
+  NearestDistance points_;
+};
 
 // The offset of a training recording: of its positions from the surface of the model, and of its forces. 0: as
 // recorded.
@@ -51,7 +181,7 @@ struct Provenance {
 
 // The bound on the error of a model's force where no force is measured, at 95 %:
 //   bound(x) = floor + per_force |f(x)| + per_distance max(0, distance(x) - inner radius) >= |model - material|
-// distance: to the nearest training data in the normalised feature space (domain_guard.h). The coefficients are fitted
+// distance: to the nearest training data in the normalised feature space. The coefficients are fitted
 // to errors of whole recordings or presses that were left out, and scaled by a quantile over these
 // (models/fit/residual_rows.h). Sources: Vovk (2015), "Cross-conformal predictors"; Lei, G'Sell, Rinaldo, Tibshirani &
 // Wasserman (2018), section 5.2 (locally weighted).

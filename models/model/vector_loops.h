@@ -32,7 +32,7 @@ struct Points {
   int dimension = 0;
 };
 
-// ---- the nearest of a set of points (domain_guard.h), in single precision ----
+// ---- the nearest of a set of points (fitted_model.h), in single precision ----
 
 // Floats in the widest vector used.
 inline constexpr std::size_t kSimdPadFloat = 16;

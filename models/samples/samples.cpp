@@ -259,7 +259,11 @@ Result<Samples> make_samples(std::vector<PreparedRecordingPointer> recordings, c
     if (Status status = add_rows(samples, *one, stride, control); !status) return status.error();
   const bool clear = std::ranges::any_of(recordings, [](const auto& one) { return one->surface.identified(); });
   const bool air = std::ranges::any_of(recordings, [](const auto& one) { return one->surface.air.found; });
-  if (!clear && !air) move_surface(samples, outer_surface_m(samples, jnd));
+  if (!clear && !air) {
+    const double out_m = outer_surface_m(samples, jnd);
+    samples.surface_outside = out_m < 0.0;
+    move_surface(samples, out_m);
+  }
   measure(samples, jnd);
   if (samples.contact.empty()) {
     return Error{
@@ -335,7 +339,7 @@ std::vector<RecordingEnds> recording_ends(const Samples& samples, const std::vec
     const double recorded_m = row.tool.position_m + samples.surface_m + samples.offsets[recording].offset_m;
     if (samples.begins_recording(i)) {
       filter.reset();
-      all.push_back({recorded_m, recorded_m, {}});
+      all.push_back({recorded_m, recorded_m, {}, row.force_N + samples.offsets[recording].force_zero_N});
     }
     filter.update(row.tool, row.motion);
     const bool ends = i + 1 == samples.rows.size() || samples.begins_recording(i + 1);

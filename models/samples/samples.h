@@ -145,6 +145,7 @@ struct Samples {
   double force_N = 0.0;              // largest
   double always_N = 0.0;             // only one row in a thousand of all has a smaller force
   double lowest_force_N = 0.0;       // below 0 if the material is known to pull (adhesion), else 0
+  bool surface_outside = false;      // of all positions, each of which has a force: there is no free air
   double rms_velocity_m_per_s = 0.0;
   std::size_t strokes = 0;
   double sample_s = 0.0;  // mean sampling period

@@ -1,10 +1,10 @@
-// The non-negative regression of the trend (models/model/trend.h; models/METHOD.md, Trend).
+// The non-negative regression of the trend (models/model/fitted_model.h; models/METHOD.md, Trend).
 //
 //   minimise sum_i s_i^2 (f_i - sum_j c_j t_ij)^2 + alpha^2 sum_j g_jj c_j^2
 //            + lambda S n sum_k (c_k+1 - c_k)^2,       all c_j >= 0,
 //   g_jj = sum_i s_i^2 t_ij^2,  S = sum_i s_i^2,  n = kElasticPieces
 //
-// t_ij: term j at row i (trend_columns.h), f_i: force, k: index of an elastic term. s_i: 1 / JND(f_i) times the weight
+// t_ij: term j at row i, f_i: force, k: index of an elastic term. s_i: 1 / JND(f_i) times the weight
 // of a Cauchy likelihood; a sample without measured force counts only while the trend there is positive. Both are
 // iterated within the training rows of each fold. The elastic response is a P-spline (Eilers & Marx 1996). alpha is the
 // relative error of all other columns, of which repeated measurements agree to about a tenth (errors in variables;
@@ -13,14 +13,121 @@
 #pragma once
 
 #include <Eigen/Core>
+
+#include <algorithm>
 #include <string>
 #include <vector>
 
+#include "engine/base/parallel.h"
+#include "engine/base/result.h"
+#include "engine/tick/features.h"
 #include "engine/tick/jnd.h"
+#include "models/model/fitted_model.h"
+#include "models/samples/samples.h"
 #include "models/samples/selection.h"
-#include "models/trend/trend_columns.h"
 
 namespace palpate {
+
+// The candidate features of a trend, the columns of its regression, and the trend made from the weights.
+//
+// A row holds the basis functions of the trend at one sample in contact, with u = depth / reference depth:
+//   depth             int_0^u of the quadratic B-splines (models/model/fitted_model.h): the elastic response; and -1 where
+//                     a material without free air pulls (Samples::surface_outside)
+//   velocity          v B_k,2(min(u, 1)), k = 0..2, then the same with v / (1 + |v| / v_0): the viscosity
+//   maxwell_spectrum  for each relaxation time a branch driven by int_0^u B_k,2, k = 0..2
+//   stops             for each threshold r, s / r times 1 - (1 - u)^4, u and u^2
+//   creep             for each time, q / r times the same; r is the greatest depth
+// Thread guarantee: slow side.
+
+// The number of basis functions of depth for each branch, stop and creeping bristle.
+inline constexpr std::size_t kCurveTerms = 3;
+
+bool has_kind(const std::vector<FeatureSpec>& features, FeatureKind kind);
+// The constants of the parts of a feature: relaxation times in s, or thresholds in m (stops).
+std::vector<double> constants_of(const FeatureSpec& spec);
+// The relaxation times of all low-passes and Maxwell branches, in order.
+std::vector<double> relaxation_times_s(const std::vector<FeatureSpec>& features);
+
+// The candidate features of a trend; a regression gives their parts the drive curves.
+struct FeatureList {
+  // Sorted by kind: depth, velocity, maxwell_spectrum (any number), stops, creep.
+  std::vector<FeatureSpec> features{FeatureSpec{}};
+
+  // Adds a feature in the order of kinds. `constants`: as constants_of; none for velocity. Without parts adds nothing.
+  void add(FeatureKind kind, const std::vector<double>& constants = {});
+  bool operator==(const FeatureList&) const = default;
+};
+
+// The dictionary: all terms that a recording of this length and rate can identify: viscosity, Maxwell branches in three
+// bands (fast, middle, slow), of which each sum is one feature, up to 8 stops, whose thresholds halve from half of the
+// greatest depth down to the encoder step, and creeping bristles. The regression sets the weights of useless ones to 0.
+FeatureList dictionary(const Samples& samples);
+// Its relaxation times in s, ascending.
+std::vector<double> dictionary_times_s(const Samples& samples);
+// A list with one feature for each relaxation time.
+FeatureList single_times(bool velocity, const std::vector<double>& times_s);
+// The name of a candidate feature in reports, with the range of its constants.
+std::string term_name(const FeatureSpec& spec);
+// The drive curve of a branch, or the friction curve of a stop or creeping bristle, from its kCurveTerms weights.
+DriveCurve combined_curve(FeatureKind kind, const double* weights, double reference_depth_m);
+using ColumnList = std::vector<Eigen::Index>;
+
+// The design matrix of a trend's regression: a row for each of some samples in contact, a column for each basis
+// function. Columns with memory are features that FeaturePlan computes, with a basis function as the drive curve.
+class TrendColumns {
+ public:
+  using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+  // At most `most_rows` evenly spaced samples in contact. `samples` outlives this. Errors: interrupted.
+  static Result<TrendColumns> make(const Samples& samples, FeatureList list, std::size_t most_rows,
+                                   const FitControl& control = {});
+
+  const Samples& samples() const { return *samples_; }
+  const FeatureList& list() const { return list_; }
+  // The samples of the rows.
+  const std::vector<std::size_t>& rows() const { return rows_; }
+  std::size_t count() const { return rows_.size(); }
+  // Row i is sample stride() * i of those in contact.
+  std::size_t stride() const { return stride_; }
+  double force_N(std::size_t row) const { return samples_->rows[rows_[row]].force_N; }
+  double depth_m(std::size_t row) const { return samples_->rows[rows_[row]].motion.position_m; }
+  // The division of the rows for cross-validation: the folds of the samples or, after leave_out_units(), their units.
+  int fold(std::size_t row) const { return by_unit_ ? unit(row) % folds() : samples_->fold[rows_[row]]; }
+  int folds() const { return by_unit_ ? std::min(samples_->units, kMostUnitFolds) : samples_->folds; }
+  int unit(std::size_t row) const { return samples_->unit[rows_[row]]; }
+  void leave_out_units() { by_unit_ = true; }
+
+  const Matrix& terms() const { return terms_; }
+  Eigen::Index columns() const { return terms_.cols(); }
+  // The columns of each feature of the list.
+  const std::vector<ColumnList>& feature_columns() const { return feature_columns_; }
+  // The columns of those features of the list for whose index `wanted` is true.
+  template <typename Wanted>
+  ColumnList columns_of(const Wanted& wanted) const {
+    ColumnList columns;
+    for (std::size_t f = 0; f < feature_columns_.size(); ++f)
+      if (wanted(f)) columns.insert(columns.end(), feature_columns_[f].begin(), feature_columns_[f].end());
+    return columns;
+  }
+
+ private:
+  static constexpr int kMostUnitFolds = 6;
+
+  const Samples* samples_ = nullptr;
+  bool by_unit_ = false;
+  FeatureList list_;
+  std::size_t stride_ = 1;
+  std::vector<std::size_t> rows_;
+  std::vector<ColumnList> feature_columns_;
+  Matrix terms_;
+};
+
+struct FittedTrend {
+  Trend trend;
+  std::vector<FeatureSpec> features;
+};
+// The trend and features for the weights `x` of the regression. `all`: keep features whose weights are 0.
+FittedTrend fitted_trend(const TrendColumns& columns, const Eigen::VectorXd& x, bool all);
 
 // alpha. The second value is for models without creep, which have few features: 0.1 leaves their trend too little
 // damping to come to rest (tests/accuracy/closed_loop_test.cpp).
@@ -44,7 +151,7 @@ class TrendEstimator {
   // they would be extrapolated.
   CrossValidated cross_validate(const ColumnList& columns) const { return cross_validate(columns, smoothness_); }
   // The weights fitted to all rows, one for each column of the rows; 0 outside `columns`.
-  Eigen::VectorXd fit(const ColumnList& columns) const { return solve(equations_.back(), columns, smoothness_); }
+  Eigen::VectorXd fit(const ColumnList& columns) const;
   double smoothness() const { return smoothness_; }
   ColumnList all_columns() const {
     return columns_.columns_of([](std::size_t) { return true; });
@@ -59,7 +166,8 @@ class TrendEstimator {
     Eigen::VectorXd start;       // the solution with all columns, an initial value
   };
   Equations gather(int left_out) const;
-  Equations sum(const std::vector<double>& scale) const;
+  // Adds the rows, each times this change of its s_i^2.
+  void add(Equations& equations, const std::vector<double>& squares) const;
   Eigen::VectorXd solve(const Equations& equations, const ColumnList& columns, double smoothness) const;
   CrossValidated cross_validate(const ColumnList& columns, double smoothness) const;
 
@@ -67,7 +175,8 @@ class TrendEstimator {
   JndLine jnd_;
   double part_error_, smoothness_;
   std::vector<double> deepest_elsewhere_m_;  // by fold
-  std::vector<Equations> equations_;         // index: the fold that is left out; the last of all rows
+  // Index: the fold that is left out; of all rows as well where the smoothness is selected, for `fit`.
+  std::vector<Equations> equations_;
 };
 
 // Below: the selection, by cross-validation and the selection rule, of the parameters of the memory that a linear

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "engine/live/pacer.h"
-#include "scenes/scene/folders.h"
+#include "scenes/scene/scene.h"
 #include "scenes/worker/model_worker.h"
 
 namespace palpate {

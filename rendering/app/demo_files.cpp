@@ -12,8 +12,8 @@
 #include "engine/base/atomic_file.h"
 #include "engine/base/text.h"
 #include "engine/base/whole_file.h"
-#include "scenes/plot/draw.h"
-#include "scenes/scene/folders.h"
+#include "scenes/plot/plot.h"
+#include "scenes/scene/scene.h"
 
 namespace palpate {
 

@@ -18,7 +18,7 @@
 #include "engine/live/pacer.h"
 #include "rendering/app/demo_app.h"
 #include "rendering/app/study_app.h"
-#include "scenes/scene/folders.h"
+#include "scenes/scene/scene.h"
 #include "scenes/study/study_file.h"
 #include "scenes/worker/model_worker.h"
 

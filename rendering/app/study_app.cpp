@@ -8,7 +8,7 @@
 
 #include "engine/live/pacer.h"
 #include "rendering/panels/panel.h"
-#include "scenes/scene/folders.h"
+#include "scenes/scene/scene.h"
 
 namespace palpate {
 namespace {

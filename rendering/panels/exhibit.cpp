@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "engine/base/text.h"
-#include "scenes/scene/folders.h"
+#include "scenes/scene/scene.h"
 
 namespace palpate {
 namespace {

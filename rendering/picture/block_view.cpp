@@ -10,7 +10,7 @@
 #include <numbers>
 #include <utility>
 
-#include "scenes/scene/folders.h"
+#include "scenes/scene/scene.h"
 
 namespace palpate {
 namespace {

@@ -83,7 +83,7 @@ std::string training_contradiction(const std::vector<CheckedFile>& files, const 
 void print_gains(const std::vector<PartGain>& gains) {
   if (gains.empty()) return;
   std::vector<std::vector<std::string>> rows{
-      {"FEATURE OF THE TREND", "WEIGHT ABOVE 0", "ERROR WITH IT [JND]", "WITHOUT"}};
+      {"FEATURE OF THE TREND", "USED", "ERROR WITH IT [JND]", "WITHOUT"}};
   for (const PartGain& one : gains)
     rows.push_back({one.name, one.taken ? "yes" : "no", fixed(one.error_with, 3), fixed(one.error_without, 3)});
   print_table(rows, true);

@@ -10,7 +10,6 @@
 #include "devices/link/device_link.h"
 #include "devices/registry/device_registry.h"
 #include "scenes/cli/verbs.h"
-#include "scenes/scene/folders.h"
 #include "scenes/scene/scene.h"
 
 namespace palpate::cli {

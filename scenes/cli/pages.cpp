@@ -19,6 +19,7 @@ namespace {
 
 struct Arguments {
   std::vector<std::string> train, test;
+  std::string after;
   std::string scene = "silicone_block";
   double budget_percent = 5.0;  // of the period of a tick
   bool json = false;
@@ -34,6 +35,7 @@ std::string command_line(const Arguments& arguments) {
   };
   add("--train", arguments.train);
   add("--test", arguments.test);
+  if (!arguments.after.empty()) add("--after", {arguments.after});
   add("--scene", {arguments.scene});
   if (arguments.request.quick) text += " --quick";
   if (arguments.budget_percent != Arguments{}.budget_percent)
@@ -57,9 +59,16 @@ Status run_report(Arguments arguments) {
   if (!scene) return scene.error();
   std::vector<std::string> paths = arguments.train;
   paths.insert(paths.end(), arguments.test.begin(), arguments.test.end());
+  if (!arguments.after.empty() && arguments.test.empty())
+    throw CLI::ValidationError("--after", "found no --test, expected recordings that continue another one; give them");
+  ReportRequest& request = arguments.request;
+  if (!arguments.after.empty()) {
+    auto after = read_usable_recording(arguments.after);
+    if (!after) return after.error();
+    request.after = prepare_recording(std::move(*after));
+  }
   auto checked = check_before_use(paths, check_request(*scene));
   if (!checked) return checked.error();
-  ReportRequest& request = arguments.request;
   request.scene = *scene;
   request.test_files = arguments.test;
   request.budget_ns = 1e9 * kHapticTick_s * 0.01 * arguments.budget_percent;
@@ -142,6 +151,9 @@ void add_report(CLI::App& app, Verbs& verbs) {
   verb->add_option(
           "--test", arguments->test,
           "Test recordings (CSV) [cross-validation over the training recordings; the last 40 % of a single one]")
+      ->type_name("CSV");
+  verb->add_option("--after", arguments->after,
+                   "Recording that the tests continue: the models begin with the memory of its end (CSV)")
       ->type_name("CSV");
   verb->add_option("--scene", arguments->scene, "Scene that gives the features and the JND line")
       ->capture_default_str();

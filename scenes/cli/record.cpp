@@ -19,7 +19,7 @@
 #include "engine/live/pacer.h"
 #include "scenes/cli/verbs.h"
 #include "scenes/live/session_recorder.h"
-#include "scenes/scene/folders.h"
+#include "scenes/scene/scene.h"
 
 namespace palpate::cli {
 namespace {

@@ -13,8 +13,7 @@
 #include "models/samples/recording_faults.h"
 #include "scenes/cli/verbs.h"
 #include "scenes/evaluation/evaluate.h"
-#include "scenes/plot/compared_forces.h"
-#include "scenes/plot/draw.h"
+#include "scenes/plot/plot.h"
 #include "scenes/scene/scene.h"
 
 namespace palpate::cli {
@@ -35,7 +34,9 @@ constexpr double kShareThatMatters = 0.005;
 struct ReplayedModel {
   LoadedModel loaded;
   ErrorSummary as_recorded;
-  ErrorSummary surface_moved;
+  ErrorSummary surface_moved, beginning_moved;
+  double beginning_m = 0.0;         // of `beginning_moved`; 0: there is none
+  ErrorSummary force_as_recorded;   // where the force zero of the recording is not 0
   BoundFigures bound, bound_moved;  // as recorded, with the surface moved
   OffsetEstimate surface;
   ModelTiming time;
@@ -45,6 +46,7 @@ struct ReplayedModel {
 struct ReplayedRecording {
   std::string path;
   std::uint64_t samples = 0, contact_samples = 0;
+  double force_zero_N = 0.0;  // of its free air; subtracted from its forces
   std::vector<ReplayedModel> models;
 };
 
@@ -109,7 +111,13 @@ OrderedJson model_json(const ReplayedModel& replayed) {
                    {"p99", number_or_null(replayed.time.measured, time.p99_ns)}};
   }
   add_figures(object["surface_moved"], replayed.surface_moved);
+  if (replayed.force_as_recorded.samples > 0) add_figures(object["force_as_recorded"], replayed.force_as_recorded);
   object["surface_offset_m"] = replayed.surface.at;
+  object["beginning_moved"] = nullptr;
+  if (replayed.beginning_m != 0.0) {
+    object["beginning_moved"] = {{"offset_m", replayed.beginning_m}};
+    add_figures(object["beginning_moved"], replayed.beginning_moved);
+  }
   object["surface_identified"] = replayed.surface.identified;
   object["predicted_error"] = nullptr;
   if (replayed.bound.has_bounds()) {  // JSON has null for NaN
@@ -128,6 +136,7 @@ OrderedJson recording_json(const ReplayedRecording& replayed) {
   return {{"recording", replayed.path},
           {"samples", replayed.samples},
           {"contact_samples", replayed.contact_samples},
+          {"force_zero_N", replayed.force_zero_N},
           {"surface_offset_m", replayed.models.front().surface.at},
           {"models", list}};
 }
@@ -152,6 +161,7 @@ std::vector<std::pair<std::string, std::string>> table_cells(const ReplayedModel
                                                                   fixed(1e3 * model.surface.standard_error, 3)
                                                             : "not identified");
   add_errors("ALIGNED ", model.surface_moved);
+  add("BEGINNING MOVED WITHIN JND %", model.beginning_m != 0.0, 1e2 * model.beginning_moved.within_jnd, 2);
   add("WITHIN BOUND %", model.bound.has_bounds(), 1e2 * model.bound.coverage, 1);
   add("ALIGNED WITHIN BOUND %", model.bound.has_bounds(), 1e2 * model.bound_moved.coverage, 1);
   add("BOUND JND", std::isfinite(model.bound.median_over_jnd), model.bound.median_over_jnd, 2);
@@ -183,6 +193,17 @@ void print_beginning_note(const std::vector<ReplayedModel>& models) {
               first->began.c_str());
 }
 
+// Says, for the first such model, that the recording begins with the force of a training recording, elsewhere.
+void print_preload_note(const std::vector<ReplayedModel>& models) {
+  const auto first = std::ranges::find_if(models, [](const ReplayedModel& one) { return one.beginning_m != 0.0; });
+  if (first == models.end()) return;
+  std::printf(
+      "note: this recording begins with the force of a training recording of %.64s, %+.3f mm from it: %.2f %% within "
+      "the JND as recorded, %.2f %% with both beginnings at one place; that uses a force of the test\n",
+      first->loaded.name.c_str(), 1e3 * first->beginning_m, 1e2 * first->as_recorded.within_jnd,
+      1e2 * first->beginning_moved.within_jnd);
+}
+
 // Says, for the first such model, that the recording does not distinguish an offset of the surface and of the force.
 void print_ambiguity_note(const std::vector<ReplayedModel>& models) {
   const auto ambiguous = [](const ReplayedModel& one) { return one.surface.force_offset_N != 0.0; };
@@ -195,9 +216,13 @@ void print_ambiguity_note(const std::vector<ReplayedModel>& models) {
 }
 
 void print_recording(const ReplayedRecording& replayed, bool all) {
-  std::printf("%s: %llu samples, %llu in contact\n", replayed.path.c_str(),
+  std::printf("%s: %llu samples, %llu in contact", replayed.path.c_str(),
               static_cast<unsigned long long>(replayed.samples),
               static_cast<unsigned long long>(replayed.contact_samples));
+  if (const ReplayedModel& first = replayed.models.front(); replayed.force_zero_N != 0.0)
+    std::printf("; forces count from %+.3g N, that of its free air (as recorded: %.64s %.2f %% within the JND)",
+                replayed.force_zero_N, first.loaded.name.c_str(), 1e2 * first.force_as_recorded.within_jnd);
+  std::printf("\n");
   std::vector<std::vector<std::string>> rows(1);
   for (const ReplayedModel& one : replayed.models) {
     const bool first = rows.size() == 1;
@@ -210,6 +235,7 @@ void print_recording(const ReplayedRecording& replayed, bool all) {
   print_table(rows, true);
   print_beginning_note(replayed.models);
   print_surface_note(replayed.models);
+  print_preload_note(replayed.models);
   print_ambiguity_note(replayed.models);
 }
 
@@ -240,10 +266,11 @@ class ForcesFile {
     return forces;
   }
 
-  void add(const RecordingRow& row, const TickSnapshot& snapshot, const HapticsTick& tick) {
+  // `recorded_N`: the force as recorded.
+  void add(const RecordingRow& row, const TickSnapshot& snapshot, const HapticsTick& tick, double recorded_N) {
     std::string line;
     const auto append = [&](double value) { (line += line.empty() ? "" : ",") += shortest(value); };
-    for (const double value : {row.time_s, row.position_m, row.force_N, snapshot.depth_m}) append(value);
+    for (const double value : {row.time_s, row.position_m, recorded_N, snapshot.depth_m}) append(value);
     for (const auto& [model, index] : columns_) append(tick.features_of(model).values[index]);
     for (std::size_t m = 0; m < tick.model_count(); ++m) append(snapshot.force_N[m]);
     file_.write(line + "\n");
@@ -307,28 +334,44 @@ Result<ReplayedRecording> replay_one(const CheckedFile& checked, const Recording
     if (!file) return file.error();
     forces.emplace(std::move(*file));
   }
+  // A test keeps every row, also those that a fit would leave out.
+  const Result<Recording> whole = read_recording(checked.path);
+  if (!whole) return whole.error();
   EvaluationRequest request;
   request.after = after;
+  request.move_beginning = true;
+  request.force_zero_N = checked.prepared->surface.force_zero_N;
+  std::size_t place = 0;
   request.also = [&](const RecordingRow& row, const TickSnapshot& snapshot, const HapticsTick& tick) {
-    if (forces) forces->add(row, snapshot, tick);
+    if (forces) forces->add(row, snapshot, tick, whole->rows[place++].force_N);
     const auto begin = snapshot.force_N.begin();
     if (!plot_path.empty())
       moments.push_back({row.time_s, row.force_N, snapshot.in_contact, {begin, begin + snapshot.model_count}});
   };
-  // A test keeps every row, also those that a fit would leave out.
-  const Result<Recording> whole = read_recording(checked.path);
-  if (!whole) return whole.error();
   const auto evaluation = evaluate(*whole, evaluated, request);
   if (!evaluation) return evaluation.error();
+  const double force_zero_N = request.force_zero_N;
+  request.also = {};
+  request.force_zero_N = 0.0;
+  request.move_surface = false;
+  Evaluation untared;
+  if (force_zero_N != 0.0) {
+    auto as_recorded = evaluate(*whole, evaluated, request);
+    if (!as_recorded) return as_recorded.error();
+    untared = std::move(*as_recorded);
+  }
   if (forces) {
     if (const Status status = forces->commit(); !status) return status.error();
   }
-  ReplayedRecording replayed{checked.path, evaluation->samples, evaluation->no_force.summary().samples, {}};
+  ReplayedRecording replayed{
+      checked.path, evaluation->samples, evaluation->no_force.summary().samples, force_zero_N, {}};
   const std::vector<ModelTiming> times = time_models(pointers, evaluation->timing);
   for (std::size_t i = 0; i < models.size(); ++i) {
-    const auto& [recorded, moved, surfaces, began] = evaluation->models[i];
-    replayed.models.push_back({models[i], recorded.summary(), moved.summary(), recorded.bounds(), moved.bounds(),
-                               surfaces.front(), times[i], began_words(models[i].model->data(), began)});
+    const auto& [recorded, moved, begins, surfaces, began, beginning_m] = evaluation->models[i];
+    replayed.models.push_back({models[i], recorded.summary(), moved.summary(), begins.summary(), beginning_m,
+                               untared.models.empty() ? ErrorSummary{} : untared.models[i].as_recorded.summary(),
+                               recorded.bounds(), moved.bounds(), surfaces.front(), times[i],
+                               began_words(models[i].model->data(), began)});
   }
   if (plot_path.empty()) return replayed;
   const Status drawn =

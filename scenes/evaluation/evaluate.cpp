@@ -22,13 +22,14 @@ class Evaluator {
     if (pooled_.models.empty()) {
       pooled_.no_force = ModelErrors(models_.front().jnd);
       for (const EvaluatedModel& one : models_)
-        pooled_.models.push_back({ModelErrors(one.jnd), ModelErrors(one.jnd), {}});
+        pooled_.models.push_back({ModelErrors(one.jnd), ModelErrors(one.jnd), ModelErrors(one.jnd), {}});
     }
     pooled_.timing.emplace_back();
     pooled_.no_force.begin_recording();
     for (std::size_t i = 0; i < models_.size(); ++i) {
       pooled_.models[i].as_recorded.begin_recording();
       pooled_.models[i].surface_moved.begin_recording();
+      pooled_.models[i].beginning_moved.begin_recording();
       const auto same = std::ranges::find_if(
           different_, [&](const Places& places) { return models_[places.front()].model == models_[i].model; });
       (same == different_.end() ? different_.emplace_back() : *same).push_back(i);
@@ -42,6 +43,16 @@ class Evaluator {
     if (const Status status = replay_at(0.0, different_, request_.control.part(0.0, 0.5)); !status) return status;
     for (const auto& [offset_m, which] : by_offset) {
       if (const Status status = replay_at(offset_m, which, request_.control.part(0.5, 1.0)); !status) return status;
+    }
+    for (const Places& places : different_) {
+      ModelEvaluation& first = pooled_.models[places.front()];
+      if (!request_.move_beginning || first.began != kBeganAtRest) continue;
+      const double offset_m = preload_offset_m(recording_, models_[places.front()]);
+      for (const std::size_t i : places) pooled_.models[i].beginning_m = offset_m;
+      if (offset_m == 0.0) continue;
+      const Status status =
+          replay_at(offset_m, {places}, request_.control.part(1.0, 1.0), &ModelEvaluation::beginning_moved);
+      if (!status) return status;
     }
     return {};
   }
@@ -61,8 +72,10 @@ class Evaluator {
     }
   }
 
-  // Replays the recording with the models `which`, up to kMaxModels at a time.
-  Status replay_at(double offset_m, const std::vector<Places>& which, const FitControl& control) {
+  // Replays the recording with the models `which`, up to kMaxModels at a time. `only`: the errors to add to; null: all
+  // with this offset.
+  Status replay_at(double offset_m, const std::vector<Places>& which, const FitControl& control,
+                   ModelErrors ModelEvaluation::*only = nullptr) {
     // Contact of each row, from the first of these groups, so that all models have the same samples.
     std::vector<bool> contact;
     for (std::size_t first = 0; first < which.size(); first += kMaxModels) {
@@ -89,6 +102,8 @@ class Evaluator {
           const double model_N = snapshot.force_N[k], bound_N = snapshot.predicted_error_N[k];
           for (const std::size_t i : which[first + k]) {
             ModelEvaluation& to = pooled_.models[i];
+            if (only != nullptr) add(to.*only, model_N, out_of_domain, bound_N);
+            if (only != nullptr) continue;
             if (offset_m == 0.0) add(to.as_recorded, model_N, out_of_domain, bound_N);
             if (offset_m == to.surfaces.back().at) add(to.surface_moved, model_N, out_of_domain, bound_N);
           }
@@ -121,8 +136,33 @@ class Evaluator {
 
 }  // namespace
 
+double preload_offset_m(const Recording& recording, const EvaluatedModel& model) {
+  constexpr double kLeastPreload_N = 0.2, kLeastMove = 0.02, kSame_jnd = 3.0;
+  const RecordingRow& first = recording.rows.front();
+  const std::vector<RecordingEnds>& ends = model.model->ends();
+  const auto away_N = [&](const RecordingEnds& one) { return std::abs(one.first_force_N - first.force_N); };
+  const auto nearest = std::ranges::min_element(ends, {}, away_N);
+  if (nearest == ends.end() || std::abs(first.force_N) <= kLeastPreload_N ||
+      std::abs(nearest->first_force_N) <= kLeastPreload_N)
+    return 0.0;
+  const double offset_m = first.position_m - nearest->first_position_m;
+  const bool same = away_N(*nearest) < kSame_jnd * model.jnd.at(first.force_N) &&
+                    in_contact(tool_sample(first), model.model->surface_m());
+  return same && std::abs(offset_m) >= kLeastMove * model.model->deepest_m() ? offset_m : 0.0;
+}
+
+Recording with_force_zero(Recording recording, double force_zero_N) {
+  for (RecordingRow& row : recording.rows) row.force_N -= force_zero_N;
+  return recording;
+}
+
 Result<Evaluation> evaluate(const Recording& recording, const std::vector<EvaluatedModel>& models,
                             const EvaluationRequest& request, Evaluation pooled) {
+  if (request.force_zero_N != 0.0) {
+    EvaluationRequest same = request;
+    same.force_zero_N = 0.0;
+    return evaluate(with_force_zero(recording, request.force_zero_N), models, same, std::move(pooled));
+  }
   if (const Status status = Evaluator(recording, models, request, pooled).run(); !status) return status.error();
   return pooled;
 }

@@ -1,6 +1,7 @@
 // Evaluates models on recordings through the tick of the live loop, kMaxModels at a time, and measures their time.
-// Errors are computed twice: with the positions as recorded, and with a surface offset subtracted from every position
-// of a recording. The offset is estimated for each model, or once for all. With the offset, contact is determined anew.
+// Errors are computed with the positions as recorded; with a surface offset subtracted from every position of a
+// recording, which is estimated for each model, or once for all; and, where a recording begins under a preload, with
+// the offset of a training recording that does so elsewhere. With an offset, contact is determined anew.
 //
 // Computation time, measured on samples in contact:
 //   tick         motion estimate, features and force of this one model
@@ -75,13 +76,20 @@ struct EvaluatedModel {
   JndLine jnd;
 };
 
+// What is to be subtracted from the positions of a recording that begins at rest under a preload, so that it begins
+// where the training recording with the nearest first force begins; 0 if there is no preload, no such recording, or a
+// distance below 2 % of the range. It uses a force of the test, so that it is no figure as recorded.
+double preload_offset_m(const Recording& recording, const EvaluatedModel& model);
+
 struct EvaluationRequest {
   // Called for every row, with positions as recorded and the first kMaxModels different models; may be empty.
   ReplayVisitor also;
   // Errors count from this time of the recording on. Earlier rows are replayed because the features have memory.
   double counted_from_s = -std::numeric_limits<double>::infinity();
   const Recording* after = nullptr;  // the recording that this one continues (engine/tick/replay.h)
+  double force_zero_N = 0.0;         // subtracted from every measured force, also for `also`: that of free air
   bool move_surface = true;          // false: the figures with the surface moved equal those as recorded
+  bool move_beginning = false;       // true: also those with `beginning_m`, where it is not 0
   // The models from which one common surface offset is estimated. Empty: each model has its own estimate.
   std::vector<ModelPointer> surface_models;
   FitControl control;
@@ -89,9 +97,10 @@ struct EvaluationRequest {
 
 // Of one model over all recordings.
 struct ModelEvaluation {
-  ModelErrors as_recorded, surface_moved;
+  ModelErrors as_recorded, surface_moved, beginning_moved;
   std::vector<OffsetEstimate> surfaces;  // of each recording; its offset is 0 if not identified
   int began = kBeganAtRest;              // the last recording (HapticsTick::began)
+  double beginning_m = 0.0;              // the last offset of preload_offset_m
 };
 
 struct Evaluation {
@@ -105,6 +114,9 @@ struct Evaluation {
 // the evaluation of as many models on earlier recordings, to which this one is added. Errors: interrupted.
 Result<Evaluation> evaluate(const Recording& recording, const std::vector<EvaluatedModel>& models,
                             const EvaluationRequest& request = {}, Evaluation pooled = {});
+
+// The recording with this force subtracted from every row.
+Recording with_force_zero(Recording recording, double force_zero_N);
 
 // The motion of a tool at one moment, and how long it stood still before the movement that it belongs to.
 struct Motion {

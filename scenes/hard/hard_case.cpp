@@ -7,7 +7,7 @@
 #include "engine/live/pacer.h"
 #include "models/correction/methods.h"
 #include "scenes/hard/hard.h"
-#include "scenes/scene/folders.h"
+#include "scenes/scene/scene.h"
 
 namespace palpate {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "models/trend/trend_columns.h"
+#include "models/trend/trend_estimator.h"
 
 namespace palpate {
 

@@ -13,7 +13,7 @@
 #include "scenes/evaluation/evaluate.h"
 #include "scenes/live/session_recorder.h"
 #include "scenes/material/rig.h"
-#include "scenes/scene/folders.h"
+#include "scenes/scene/scene.h"
 
 namespace palpate {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "engine/base/text.h"
 #include "models/model/file/model_io.h"
-#include "models/trend/trend_columns.h"
+#include "models/trend/trend_estimator.h"
 
 namespace palpate {
 namespace {

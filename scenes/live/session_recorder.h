@@ -20,7 +20,6 @@
 #include "engine/base/result.h"
 #include "engine/live/haptics_loop.h"
 #include "engine/recording/recording.h"
-#include "engine/recording/recording_writer.h"
 #include "scenes/live/comparison.h"
 
 namespace palpate {

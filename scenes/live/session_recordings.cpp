@@ -7,7 +7,7 @@
 #include "engine/base/text.h"
 #include "engine/import/import_table.h"
 #include "models/samples/samples.h"
-#include "scenes/scene/folders.h"
+#include "scenes/scene/scene.h"
 
 namespace palpate {
 

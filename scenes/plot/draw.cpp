@@ -1,4 +1,4 @@
-#include "scenes/plot/draw.h"
+#include "scenes/plot/plot.h"
 
 #include <fcntl.h>
 #include <stdlib.h>

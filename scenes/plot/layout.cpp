@@ -1,4 +1,4 @@
-#include "scenes/plot/layout.h"
+#include "scenes/plot/plot.h"
 
 #include <algorithm>
 #include <cmath>

@@ -2,7 +2,7 @@
 // the data and draws NAME.svg and NAME.png in the folder where it is run.
 // The names of series are in a legend above the panels, or with `names_at_ends` beside the curves. Tics of
 // logarithmic axes have SI prefixes (300 mN, 2 us, 3 kN). Lines that exceed a given limit of the y axis are marked at
-// the edge (layout.h). Fonts, tics and neutral colours are in assets/figures/style.gp.
+// the edge (below). Fonts, tics and neutral colours are in assets/figures/style.gp.
 // Thread guarantee: value types and pure functions; plot_script reads the asset.
 #pragma once
 
@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "engine/base/result.h"
+#include "engine/tick/jnd.h"
 
 namespace palpate {
 
@@ -82,5 +83,90 @@ struct Plot {
 
 // Errors: the asset is missing.
 Result<std::string> plot_script(Plot plot);
+
+// Layout of a panel: ranges and tics of its axes, names beside curves and lines, marks where curves are cut off.
+// Thread guarantee: pure functions.
+
+struct AxisRange {
+  double low = 0.0, high = 1.0;
+};
+
+// The range of the x axis, or of the y axis when `vertical`: the limits of the axis where they are given, else those
+// of the data and levels with a margin.
+AxisRange range_of(const Panel& panel, bool vertical);
+
+// The labelled values (tics) of a logarithmic axis, at least two and at most about `most`: decades, with steps such as
+// 2 and 5 between few decades.
+std::vector<double> log_tics(const AxisRange& range, std::size_t most);
+
+// A name beside a point; x and y are fractions of the panel.
+struct NameTag {
+  std::string text;
+  Hue colour = kInkColour;
+  double x = 1.0, y = 0.0;
+  bool beside_panel = false;
+  bool begins_here = true;  // the text begins at x; false: it ends there
+};
+
+// The names of horizontal levels and, with `names_at_ends`, of the series: of a series of one point at the point,
+// between its bars, of all others beside the panel, where they are moved up and down so that they do not overlap.
+// `line`: height of a line of text, `character`: width of a letter, both as fractions of the panel.
+std::vector<NameTag> name_tags(const Panel& panel, double line, double character);
+
+// Marks at the edge of the panel, one for each part of a line that is beyond a given limit of the y axis.
+std::vector<Series> cut_marks(const Panel& panel);
+
+// The forces of models beside a measured force over time, as panels of a figure.
+// Thread guarantee: pure functions.
+
+struct ComparedMoment {
+  double time_s = 0.0, measured_N = 0.0;
+  bool in_contact = false;
+  std::vector<double> force_N;  // one per model
+};
+
+struct ComparedModel {
+  Series curve;  // without rows
+  JndLine jnd;
+};
+
+// Two panels: the forces, and below them each model's difference from the measured force in JND, in contact, with the
+// band of one JND. Of many moments the one with the largest error of each group is drawn, so that a bad sample is
+// visible. The first model is on top, and its curve is never cut. `moments`: at least one.
+std::vector<Panel> compared_forces(const std::string& title, const std::vector<ComparedModel>& models,
+                                   const std::vector<ComparedMoment>& moments);
+
+// Merges curves that are equal, because only one of them would be visible. Areas stay.
+void merge_equal(std::vector<Series>& series);
+
+// Draws plots into files with the external program gnuplot.
+// Thread guarantee: slow side; starts a process, does I/O.
+
+// A temporary folder in `parent`, which the destructor removes.
+class ScratchFolder {
+ public:
+  explicit ScratchFolder(const std::string& parent, const std::string& name = ".palpate-figures-");
+  ScratchFolder(const ScratchFolder&) = delete;
+  ScratchFolder& operator=(const ScratchFolder&) = delete;
+  ~ScratchFolder();
+  const std::string& path() const noexcept { return path_; }  // empty: it could not be created
+
+ private:
+  std::string path_;
+  int lock_ = -1;  // of the folder: the system releases it when the program ends
+};
+
+// Errors: there is no gnuplot in PATH; says what to install.
+Status find_gnuplot();
+
+// Writes NAME.gp, NAME.svg and NAME.png of every plot into `folder`, which exists. Errors: gnuplot is missing or
+// fails; a file cannot be written.
+Status draw_plots(const std::string& folder, const std::vector<Plot>& plots);
+
+// Draws one plot into the file `path`, which ends in .svg or .png. Writes the whole file or nothing. Errors: those of
+// check_plot_path and draw_plots.
+Status draw_plot(const Plot& plot, const std::string& path, bool overwrite);
+// Errors: `path` does not end in .svg or .png; those of AtomicFile::create.
+Status check_plot_path(const std::string& path, bool overwrite);
 
 }  // namespace palpate

@@ -9,7 +9,7 @@
 #include "engine/base/text.h"
 #include "models/correction/methods.h"
 #include "scenes/evaluation/evaluate.h"
-#include "scenes/plot/layout.h"
+#include "scenes/plot/plot.h"
 
 namespace palpate {
 namespace {
@@ -28,6 +28,7 @@ Table models_table(const ReportData& data) {
     table.begin_row();
     table.add({"model", "model"}, one.name);
     table.add({"size", "size"}, one.size);
+    table.add({"rank", "rank"}, one.rank > 0 ? TableCell(one.rank) : TableCell(kNoNumber));
     table.add({"seeds", "seeds"}, one.seeds);
     table.add({"seed", ""}, one.plan ? one.plan->seed : 0);
     table.add({"contact_samples", "samples"}, errors.samples);
@@ -52,6 +53,8 @@ Table models_table(const ReportData& data) {
     table.add({"moved_within_jnd", "moved: ≤ JND [%]", kInPercent, 2}, one.moved.within_jnd);
     table.add({"moved_p99_error_over_jnd", "99 % [JND]"}, one.moved.p99_error_over_jnd);
     table.add({"moved_rms_error_N", "RMS [mN]", kInMilli}, one.moved.rms_error_N);
+    table.add({"untared_within_jnd", "force as recorded: ≤ JND [%]", kInPercent, 2},
+              one.untared.samples > 0 ? one.untared.within_jnd : kNoNumber);
     table.add({"bound_95_held", "≤ bound [%], moved", kInPercent, 1, 1}, one.bound.coverage);
     table.add({"bound_95_held_moved", "", kInPercent, 1}, one.bound_moved.coverage);
     table.add({"median_bound_N", ""}, one.bound.median_N);
@@ -127,7 +130,7 @@ Table gains_table(const ReportData& data) {
   for (const PartGain& one : data.gains) {
     table.begin_row();
     table.add({"feature", "feature"}, one.name);
-    table.add({"weight_above_0", "weight above 0"}, yes_or_no(one.taken));
+    table.add({"weight_above_0", "used"}, yes_or_no(one.taken));
     table.add({"error_over_jnd_with", "cross-validated error with it [JND]"}, one.error_with);
     table.add({"error_over_jnd_without", "without"}, one.error_without);
   }
@@ -310,6 +313,7 @@ Table headline_table(const ReportData& data) {
     table.begin_row();
     table.add({"", "model"}, name_with_same(one));
     table.add({"", "centres"}, one.size);
+    table.add({"", "rank"}, one.rank > 0 ? TableCell(one.rank) : TableCell(kNoNumber));
     table.add({"", "RMS [mN]", kInMilli}, errors.rms_error_N);
     table.add({"", "within JND [%]", kInPercent, 2, 2}, std::floor(1e4 * errors.within_jnd) / 1e4);
     table.add({"", "", kInPercent, 2}, of_seeds(one, one.within_range.low));

@@ -38,6 +38,7 @@ struct Fitted {
   std::shared_ptr<const FittedModel> model;
   double error_over_jnd = 0.0;  // cross-validated in the training recordings
   double seconds = 0.0;
+  Eigen::Index rank = 0;  // as in MethodFit
 };
 
 class Measurement {
@@ -46,6 +47,8 @@ class Measurement {
       : data_(data), models_(data.models), progress_(control, plan_models(quick)) {}
 
   Status run() {
+    for (const Split& fold : data_.recordings.folds)
+      for (const PreparedRecordingPointer& one : fold.tested) tares_ = tares_ || one->surface.force_zero_N != 0.0;
     for (const Split& fold : data_.recordings.folds) {
       if (const Status status = run_fold(fold); !status) return status;
     }
@@ -97,8 +100,8 @@ class Measurement {
     if (!one) return Error{plan_name(plan) + ": " + one.error().message};
     if (first_fold() && one->choices)
       data_.choices.try_emplace(plan.selects_centres() ? plan.centres : 0, *one->choices);
-    return fitted_.emplace_back(
-        Fitted{plan, std::make_shared<const FittedModel>(std::move(one->data)), one->error_over_jnd, one->seconds});
+    return fitted_.emplace_back(Fitted{plan, std::make_shared<const FittedModel>(std::move(one->data)),
+                                       one->error_over_jnd, one->seconds, one->rank});
   }
 
   // The number of centres of this fold, from the cross-validated errors of random centres.
@@ -133,9 +136,11 @@ class Measurement {
       if (!one) return one.error();
       result.fit_seconds += one->seconds / static_cast<double>(data_.recordings.folds.size());
       result.model = one->model;
+      result.rank = one->rank;
       const int size = result.model->centre_count();
       result.least_size = result.fits.empty() ? size : std::min(result.least_size, size);
       result.size = std::max(result.size, size);
+      result.rank = one->rank;
       result.fits.push_back(result.model);
     }
     return {};
@@ -157,11 +162,12 @@ class Measurement {
 
   void finish(ModelResult& result) const {
     if (!result.plan) return;
-    const auto& [recorded, moved, surfaces, began] = evaluation_.models[result.place];
-    result.errors = recorded.unit_errors();
-    result.moved = moved.summary();
-    result.bound = recorded.bounds();
-    result.bound_moved = moved.bounds();
+    const ModelEvaluation& found = evaluation_.models[result.place];
+    result.errors = found.as_recorded.unit_errors();
+    result.moved = found.surface_moved.summary();
+    if (tares_) result.untared = untared_.models[result.place].as_recorded.summary();
+    result.bound = found.as_recorded.bounds();
+    result.bound_moved = found.surface_moved.bounds();
     result.name = plan_name(*result.plan);
     if (!result.plan->selects_centres() || result.size == 0) return;
     // A fit has at most as many centres as sites; the name has the actual number.
@@ -184,6 +190,7 @@ class Measurement {
     std::vector<EvaluatedModel> models;
     EvaluationRequest request;
     request.counted_from_s = counted_from_s;
+    request.after = data_.after;
     for (const ModelResult& one : models_) {
       if (!one.model) continue;
       models.push_back({one.model, data_.scene.jnd});
@@ -192,6 +199,14 @@ class Measurement {
         request.surface_models.push_back(one.model);
     }
     request.control = progress_.next(kEvaluateSeconds * static_cast<double>(models.size()));
+    if (tares_) {
+      EvaluationRequest as_recorded = request;
+      as_recorded.move_surface = false;
+      auto untared = evaluate(tested->recording, models, as_recorded, std::move(untared_));
+      if (!untared) return untared.error();
+      untared_ = std::move(*untared);
+    }
+    request.force_zero_N = tested->surface.force_zero_N;
     auto evaluated = evaluate(tested->recording, models, request, std::move(evaluation_));
     if (!evaluated) return evaluated.error();
     evaluation_ = std::move(*evaluated);
@@ -242,6 +257,7 @@ class Measurement {
       for (const auto figure :
            {&ErrorSummary::within_jnd, &ErrorSummary::p99_error_over_jnd, &ErrorSummary::rms_error_N})
         take_median([&](ModelResult& one) -> double& { return one.moved.*figure; });
+      take_median([](ModelResult& one) -> double& { return one.untared.within_jnd; });
       for (const auto bound : {&ModelResult::bound, &ModelResult::bound_moved})
         take_median([&](ModelResult& one) -> double& { return (one.*bound).coverage; });
       for (std::size_t i = 0; i < median.errors.unit_within.size(); ++i)
@@ -298,8 +314,11 @@ class Measurement {
       std::vector<ModelPointer> models;
       for (const std::size_t i : shown) models.push_back(models_[i].fits[fold]);
       for (const PreparedRecordingPointer& recording : data_.recordings.folds[fold].tested) {
-        TestCurves curves =
-            test_curves(recording->recording, models, data_.scene.jnd, data_.recordings.folds[fold].counted_from_s);
+        EvaluationRequest request;
+        request.counted_from_s = data_.recordings.folds[fold].counted_from_s;
+        request.after = data_.after;
+        request.force_zero_N = recording->surface.force_zero_N;
+        TestCurves curves = test_curves(recording->recording, models, data_.scene.jnd, request);
         if (curves.score > data_.curves.score) data_.curves = std::move(curves);
       }
     }
@@ -311,27 +330,30 @@ class Measurement {
   Progress progress_;
   std::vector<Fitted> fitted_;  // of the current fold
   Evaluation evaluation_;       // of all models but the first on all test recordings
+  Evaluation untared_;          // the same with the forces as recorded, if `tares_`
+  bool tares_ = false;          // a test recording has a force zero
 };
 
 }  // namespace
 
 TestCurves test_curves(const Recording& recording, const std::vector<ModelPointer>& models, const JndLine& jnd,
-                       double from_s) {
+                       const EvaluationRequest& request) {
   TestCurves curves;
   curves.recording = &recording;
   std::vector<ComparedMoment>& rows = curves.moments;
   // Over the rows before each: the sum of (error / JND)^2 of the first model, and the samples in contact.
   std::vector<double> squares{0.0};
   std::vector<std::size_t> contacts{0};
-  replay(recording, models, [&](const RecordingRow& row, const TickSnapshot& snapshot, const HapticsTick&) {
-    if (row.time_s < from_s) return;
+  const auto visit = [&](const RecordingRow& row, const TickSnapshot& snapshot, const HapticsTick&) {
+    if (row.time_s < request.counted_from_s) return;
     const bool contact = snapshot.in_contact;
     const double ratio = contact ? jnd.error_over_jnd(snapshot.force_N[0], row.force_N) : 0.0;
     squares.push_back(squares.back() + ratio * ratio);
     contacts.push_back(contacts.back() + (contact ? 1 : 0));
     const auto begin = snapshot.force_N.begin();
     rows.push_back({row.time_s, row.force_N, contact, {begin, begin + snapshot.model_count}});
-  });
+  };
+  replay(with_force_zero(recording, request.force_zero_N), models, visit, 0.0, request.after);
   const double length_s = std::min(kStretchSeconds, rows.back().time_s - rows.front().time_s);
   std::size_t first = 0;
   for (std::size_t last = 0; last < rows.size(); ++last) {
@@ -355,8 +377,9 @@ TestCurves test_curves(const Recording& recording, const std::vector<ModelPointe
 }
 
 Result<ReportData> measure(const RecordingSet& recordings, const Scene& scene, bool quick, double budget_ns,
-                           const FitControl& control) {
+                           const FitControl& control, const Recording* after) {
   ReportData data;
+  data.after = after;
   data.scene = scene;
   data.budget_ns = budget_ns;
   data.recordings = recordings;

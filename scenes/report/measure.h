@@ -11,7 +11,7 @@
 #include "models/model/fitted_model.h"
 #include "scenes/evaluation/evaluate.h"
 #include "scenes/evaluation/model_errors.h"
-#include "scenes/plot/compared_forces.h"
+#include "scenes/plot/plot.h"
 #include "scenes/report/recordings.h"
 #include "scenes/scene/scene.h"
 
@@ -31,9 +31,10 @@ struct TestCurves {
   std::vector<std::size_t> models{};  // indices of ReportData::models, the recommended first; set by `measure`
 };
 
-// `models`: up to kMaxModels. Samples before `from_s` are replayed, but do not count.
+// `models`: up to kMaxModels. Samples before `counted_from_s` are replayed, but do not count.
+// The replay has the force zero and the beginning of `request`.
 TestCurves test_curves(const Recording& recording, const std::vector<ModelPointer>& models, const JndLine& jnd,
-                       double from_s = -1e300);
+                       const EvaluationRequest& request = {});
 
 // Whether the model is one of the comparison that everybody sees: voxel, random, kdtree and greedy as in the paper, the
 // trend, and the trend corrected by greedy.
@@ -54,8 +55,10 @@ struct ModelResult {
   bool selects_size = false;      // its number of centres is selected in each fold
   int size = 0;                   // centres, or nodes of the grid; the largest of all folds
   int least_size = 0;             // the smallest of all folds
+  Eigen::Index rank = 0;          // of its equations, of centres and tail, in the last fold; 0: without equations
   UnitErrors errors;              // positions as recorded
   ErrorSummary moved;             // with the surface offset of every test recording subtracted
+  ErrorSummary untared;           // with the forces as recorded; empty where no force zero is subtracted
   BoundFigures bound, bound_moved;
   std::uint64_t seeds = 1;                   // number of fits with different seeds
   Interval within_range, p99_range;          // least and greatest of them
@@ -81,6 +84,7 @@ struct ReportData {
   Scene scene;
   double budget_ns = kBudget_ns;  // the longest tick of a candidate
   RecordingSet recordings;
+  const Recording* after = nullptr;  // the recording that the tests continue
   std::vector<TestedRecording> tested;
   NoiseFloor floor;                       // of all test recordings together
   std::vector<ModelResult> models;        // the first is always 0 N; no two have the same forces
@@ -94,11 +98,12 @@ struct ReportData {
   std::map<Base, ErrorBySize> by_size;    // empty in a quick report
 };
 
-// Fits every planned model once per fold and pools its errors over the folds. `quick`: the main models with 100
-// centres. All results but times are deterministic. Errors: those of the recordings and the fits, with the recordings'
-// names; interrupted.
+// Fits every planned model once per fold and pools its errors over the folds. The forces of a test recording count from
+// those of its own free air, as those of a training recording do. `quick`: the main models with 100 centres. `after`:
+// the recording that the tests continue, or null. All results but times are deterministic. Errors: those of the
+// recordings and the fits, with the recordings' names; interrupted.
 Result<ReportData> measure(const RecordingSet& recordings, const Scene& scene, bool quick, double budget_ns,
-                           const FitControl& control);
+                           const FitControl& control, const Recording* after = nullptr);
 
 // Every model but no force is a candidate.
 Ranking choose(const std::vector<ModelResult>& models, double budget_ns = kBudget_ns);

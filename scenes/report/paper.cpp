@@ -2,6 +2,7 @@
 
 #include "engine/base/text.h"
 #include "models/correction/methods.h"
+#include "scenes/evaluation/model_errors.h"
 #include "scenes/report/publish.h"
 
 namespace palpate {
@@ -229,6 +230,7 @@ Result<std::string> make_paper(const PaperRequest& request, const FitControl& co
   const Status written = write_report(*folder, "paper.html", tables, paper_figures(*data),
                                       {{"answer", escape_html(answer)},
                                        {"runs", escape_html(runs_words(*data))},
+                                       {"jnd", escape_html(kJndDefinition)},
                                        {"origin", escape_html(request.origin)}},
                                       report, control);
   if (!written) return written.error();

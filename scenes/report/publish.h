@@ -15,7 +15,7 @@
 #include "engine/base/parallel.h"
 #include "engine/base/result.h"
 #include "scenes/evaluation/model_errors.h"
-#include "scenes/plot/draw.h"
+#include "scenes/plot/plot.h"
 
 namespace palpate {
 

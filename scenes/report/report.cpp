@@ -16,7 +16,7 @@
 #include "models/model/file/model_io.h"
 #include "scenes/evaluation/model_errors.h"
 #include "scenes/report/contents.h"
-#include "scenes/scene/folders.h"
+#include "scenes/scene/scene.h"
 
 namespace palpate {
 namespace {
@@ -48,14 +48,23 @@ constexpr double kStudiedUpTo_N = 2.5;  // Hoever & Harders (2009), section 4.1
 // Two decimals, rounded down: 99.996 % is "99.99 %".
 std::string percent(double share) { return share >= 1.0 ? "100 %" : fixed(std::floor(1e4 * share) / 100.0, 2) + " %"; }
 
+// The force zero of a test recording, from its free air, that is farthest from 0, if it is above half a JND.
+std::optional<double> large_force_zero_N(const ReportData& data) {
+  double largest_N = 0.0;
+  for (const TestedRecording& one : data.tested)
+    if (std::abs(one.recording->surface.force_zero_N) > std::abs(largest_N))
+      largest_N = one.recording->surface.force_zero_N;
+  return std::abs(largest_N) > 0.5 * data.scene.jnd.at(0.0) ? std::optional(largest_N) : std::nullopt;
+}
+
 // By how much a test recording differs from the zeros of the training, as far as the data identify it; 0: not at all.
 struct OtherZero {
   std::string recording;
   double force_N = 0.0, surface_m = 0.0;  // to be subtracted
 };
 
-// The test recording whose surface is farthest from the models', where that decides the figures. The force is that of
-// its own free air, or the offset that explains the recording as well as the surface does.
+// The test recording whose surface is farthest from the models', where that decides the figures. The force is the
+// offset that explains the recording as well as the surface does.
 std::optional<OtherZero> other_zero(const ReportData& data) {
   const ModelResult& use = data.models[data.choice.recommended];
   const auto farthest = std::ranges::max_element(
@@ -67,16 +76,8 @@ std::optional<OtherZero> other_zero(const ReportData& data) {
     return {};
   OtherZero found{farthest->recording->recording.name};
   if (surface.at != 0.0 || ambiguous) found.surface_m = surface.minimum_at;
-  double trained_N = 0.0;
-  for (const RecordingOffset& one : data.surfaces)
-    trained_N += one.force_zero_N / static_cast<double>(data.surfaces.size());
-  const FreeAir& air = farthest->recording->surface.air;
-  const double zero_N = air.zero_N - trained_N;
-  if (air.found && std::abs(zero_N) > std::max(0.5 * data.scene.jnd.at(0.0), 2.0 * air.zero_error_N)) {
-    found.force_N = zero_N;
-  } else if (ambiguous) {
-    found.force_N = surface.force_offset_N;
-  }
+  // The zero of the force in free air is subtracted already.
+  if (ambiguous && !farthest->recording->surface.air.found) found.force_N = surface.force_offset_N;
   return found;
 }
 
@@ -103,8 +104,12 @@ std::string zero_command(const OtherZero& zero, const ReportRequest& request) {
 std::string answer(const ReportData& data) {
   if (const auto zero = other_zero(data)) return zero_text(*zero);
   const ModelResult& use = data.models[data.choice.recommended];
-  return recommendation(use.name, use.candidate()) +
-         (use.errors.within_jnd >= kGoodShare ? " Confirm on another recording." : "");
+  std::string sentence = recommendation(use.name, use.candidate());
+  if (const auto zero_N = large_force_zero_N(data)) {
+    sentence.pop_back();
+    return sentence + "; forces count from its free air, " + general(*zero_N, 2) + " N.";
+  }
+  return sentence + (use.errors.within_jnd >= kGoodShare ? " Confirm on another recording." : "");
 }
 
 // What is said of a model beside the recommended one.
@@ -123,6 +128,9 @@ std::vector<std::string> details(const ReportData& data, const ReportRequest& re
     lines.push_back("As recorded: " + recommendation(use.name, use.candidate()) + " With the surface aligned, which " +
                     "uses the forces of the test: " + share_text(use.moved.within_jnd) + ".");
   }
+  if (use.untared.samples > 0)
+    lines.push_back("With the forces as recorded, whose zero in free air is not subtracted: " +
+                    share_text(use.untared.within_jnd) + " within one JND.");
   if (choice.best != choice.recommended)
     lines.push_back("As good, but slower: " + compared(data.models[choice.best]) + ".");
   if (choice.fastest_below_jnd && choice.fastest_below_jnd != choice.recommended)
@@ -151,8 +159,11 @@ OrderedJson report_json(const ReportData& data, const ReportRequest& request, co
     candidates.push_back(data.models[i].name);
     if (data.choice.as_good[i]) as_good.push_back(data.models[i].name);
   }
-  OrderedJson offsets = OrderedJson::array();
-  for (const TestedRecording& one : data.tested) offsets.push_back(one.surface.at);
+  OrderedJson offsets = OrderedJson::array(), zeros = OrderedJson::array();
+  for (const TestedRecording& one : data.tested) {
+    offsets.push_back(one.surface.at);
+    zeros.push_back(one.recording->surface.force_zero_N);
+  }
   return {{"format", "palpate-report"},
           {"version", 1},
           {"scene", data.scene.name},
@@ -165,6 +176,7 @@ OrderedJson report_json(const ReportData& data, const ReportRequest& request, co
             {"within_jnd", data.floor.within_jnd},
             {"p99_error_over_jnd", data.floor.p99_error_over_jnd}}},
           {"surface_offset_m", offsets},
+          {"force_zero_N", zeros},
           {"correction_used", data.corrects},
           {"relaxation_papers_times_s", data.papers_times_s},
           {"tables", numbers},
@@ -319,8 +331,8 @@ Result<ReportAnswer> make_report(const ReportRequest& request, const FitControl&
   if (!folder) return folder.error();
   const auto recordings = split_recordings(request.train, request.test);
   if (!recordings) return recordings.error();
-  const auto data =
-      measure(*recordings, request.scene, request.quick, request.budget_ns, control.part(0.0, kMeasuringShare));
+  const auto data = measure(*recordings, request.scene, request.quick, request.budget_ns,
+                            control.part(0.0, kMeasuringShare), request.after ? &request.after->recording : nullptr);
   if (!data) return data.error();
   const std::string words = answer(*data);
   auto model = model_text(*data, request, control.part(kMeasuringShare, 0.99));

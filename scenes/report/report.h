@@ -16,6 +16,7 @@ struct ReportRequest {
   Scene scene;
   std::vector<PreparedRecordingPointer> train;  // empty: the virtual silicone
   std::vector<PreparedRecordingPointer> test;   // empty: see split_recordings
+  PreparedRecordingPointer after{};             // the recording that the tests continue; null: none
   std::vector<std::string> test_files{};        // their paths, for a command in the answer
   bool quick = false;                           // fewer models
   double budget_ns = kBudget_ns;                // the longest tick of a model that is recommended

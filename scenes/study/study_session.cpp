@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "devices/registry/device_registry.h"
-#include "scenes/scene/folders.h"
+#include "scenes/scene/scene.h"
 
 namespace palpate {
 namespace {

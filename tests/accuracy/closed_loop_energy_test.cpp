@@ -2,7 +2,6 @@
 // than they return.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <limits>
 #include <string>
 

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <vector>
@@ -24,7 +23,11 @@ const Grip kHands[] = {{"finger, 50 g", 0.05, 100.0, 2.2},
 // The largest swing at rest and the energy from the device in a second of it. Measured on the whole grid: see below.
 constexpr double kSwing_m = 0.35e-3;
 constexpr double kGiven_J = 300e-6;
+// What a whole press may return beyond what it took, 34 mJ measured: the first groups of a link are younger than later
+// ones, so that a stiff block is limited 0.1 s after it was touched.
+constexpr double kReturned_J = 50e-3;
 constexpr double kEncoder_m = 10e-6;
+constexpr double kEncoderReturns_J = 50e-6;  // two of its steps at 2.5 N
 
 // F = scale x stiffness x depth x (1 + depth / 2 mm), or without the last factor.
 class Surface final : public NamedModel {
@@ -80,8 +83,8 @@ double largest_still_share(const Link& link, const Grip& grip, const Stiffness& 
 TEST(ClosedLoop, NoHandIsDrivenBehindAnyLink) {
   const bool whole = std::getenv("PALPATE_GRID") != nullptr;
   std::vector<double> shares_of_still;
-  double worst_m = 0.0, worst_J = 0.0, worst_wander = 0.0;
-  std::size_t number = 0, runs = 0, cut = 0;
+  double worst_m = 0.0, worst_J = 0.0, worst_wander = 0.0, worst_returned_J = 0.0;
+  std::size_t number = 0, runs = 0, cut = 0, returning = 0;
   for (const Link& link : links()) {
     for (std::size_t pair = 0; pair < 16; ++pair, ++number) {
       // One of the sixteen pairs of hand and model on each link.
@@ -102,6 +105,9 @@ TEST(ClosedLoop, NoHandIsDrivenBehindAnyLink) {
       EXPECT_LE(one.swing_m, kSwing_m) << row;
       EXPECT_LE(one.given_J, kGiven_J) << row;
       EXPECT_LE(one.most_share - one.least_share, 0.05) << row;
+      worst_returned_J = std::max(worst_returned_J, one.returned_J);
+      if (one.returned_J > kEncoderReturns_J) ++returning;
+      EXPECT_LE(one.returned_J, kReturned_J) << row;
       worst_m = std::max(worst_m, one.swing_m);
       worst_J = std::max(worst_J, one.given_J);
       worst_wander = std::max(worst_wander, one.most_share - one.least_share);
@@ -110,8 +116,8 @@ TEST(ClosedLoop, NoHandIsDrivenBehindAnyLink) {
       const double still = largest_still_share(link, grip, model);
       shares_of_still.push_back(one.least_share / std::max(still, 1e-3));
       if (whole) {
-        std::printf("%s: swing %.3f mm, %.0f uJ, share %.3f to %.3f, still up to %.3f\n", row, 1e3 * one.swing_m,
-                    1e6 * one.given_J, one.least_share, one.most_share, still);
+        std::printf("%s: swing %.3f mm, %.0f uJ, share %.3f to %.3f, still up to %.3f, returned %.0f uJ\n", row,
+                    1e3 * one.swing_m, 1e6 * one.given_J, one.least_share, one.most_share, still, 1e6 * one.returned_J);
       }
     }
   }
@@ -120,6 +126,8 @@ TEST(ClosedLoop, NoHandIsDrivenBehindAnyLink) {
   std::printf(
       "swing up to %.3f mm, %.0f uJ, share wanders by %.3f; it is %.2f of the largest still one (median of %zu)\n",
       1e3 * worst_m, 1e6 * worst_J, worst_wander, median, shares_of_still.size());
+  std::printf("a press returns up to %.2f mJ more than it took; %zu of %zu more than %.0f uJ\n", 1e3 * worst_returned_J,
+              returning, runs, 1e6 * kEncoderReturns_J);
   EXPECT_GE(median, 0.6);
   EXPECT_LE(cut, runs / 50);
 }

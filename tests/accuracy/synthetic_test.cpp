@@ -5,7 +5,6 @@
 // measured value with a margin for other compilers and later changes.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
 #include <iostream>
 

@@ -1,4 +1,4 @@
-#include "tests/bench/bench_data.h"
+#include "tests/bench/bench.h"
 
 #include <malloc.h>
 

@@ -29,7 +29,7 @@
 #include "engine/base/parallel.h"
 #include "models/linear/lapack.h"
 #include "models/model/vector_loops.h"
-#include "tests/bench/bench_tables.h"
+#include "tests/bench/bench.h"
 
 namespace palpate::bench {
 namespace {

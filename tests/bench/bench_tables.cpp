@@ -1,4 +1,4 @@
-#include "tests/bench/bench_tables.h"
+#include "tests/bench/bench.h"
 
 #include <cstdio>
 #include <set>

@@ -6,8 +6,7 @@
 
 #include "models/model/correction.h"
 #include "models/model/fitted_model.h"
-#include "tests/bench/bench_data.h"
-#include "tests/bench/bench_queries.h"
+#include "tests/bench/bench.h"
 
 namespace palpate::bench {
 namespace {

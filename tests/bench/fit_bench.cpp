@@ -9,8 +9,7 @@
 
 #include "models/correction/algebra.h"
 #include "models/model/correction.h"
-#include "tests/bench/bench_data.h"
-#include "tests/bench/bench_queries.h"
+#include "tests/bench/bench.h"
 #include "tests/support/fit_centres.h"
 
 namespace palpate::bench {

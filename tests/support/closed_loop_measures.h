@@ -2,7 +2,6 @@
 // the energy that a tool exchanges with the rendered force in cycles and strokes.
 #pragma once
 
-#include <algorithm>
 #include <cstdint>
 #include <functional>
 #include <string>

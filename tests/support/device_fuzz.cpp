@@ -6,7 +6,7 @@
 #include "devices/bridge/bridge_bus.h"
 #include "devices/firmware/bridge_protocol.h"
 #include "devices/hid/hidapi_bus.h"
-#include "devices/link/device_endpoint.h"
+#include "devices/link/device_link.h"
 #include "tests/support/fuzz_checks.h"
 #include "tests/support/simulated_device.h"
 

@@ -6,7 +6,6 @@
 #include <chrono>
 #include <memory>
 #include <mutex>
-#include <string>
 #include <thread>
 
 #include "devices/link/device_link.h"

@@ -4,8 +4,6 @@
 #include <signal.h>
 #include <sys/resource.h>
 
-#include <cstdint>
-
 namespace palpate::test {
 
 // While this exists, no file of this process can grow beyond `bytes`, as on a full disk.

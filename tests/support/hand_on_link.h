@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "devices/bridge/bridge_bus.h"
-#include "devices/link/device_endpoint.h"
+#include "devices/link/device_link.h"
 #include "engine/base/random_stream.h"
 #include "engine/live/live_tick.h"
 #include "scenes/hard/hard.h"
@@ -26,13 +26,14 @@ struct Link {
 
 class HandOnLink {
  public:
-  // Of the last second, in which the hand holds still.
+  // Of the last second of the hold, in which the hand is still.
   struct Rest {
     double swing_m = 0.0;                        // peak to peak
     double given_J = 0.0;                        // energy from the device
     double least_share = 1.0, most_share = 0.0;  // of the stiffness, by StabilityLimit
     double force_N = 0.0;                        // the largest
     std::uint32_t faults = 0;                    // of the device
+    double returned_J = 0.0;                     // of the whole press: what the device gave, less what it took
   };
   // `limited`: false renders the model's stiffness whatever the delay.
   HandOnLink(const Link& link, const Grip& grip, std::shared_ptr<const ForceModel> model, double encoder_m,
@@ -49,11 +50,13 @@ class HandOnLink {
 
   LoopControls controls;
 
-  // Presses towards `aim_m` within 0.3 s, receives a pulse of 1 N at 0.6 s, and holds still until 3 s.
+  // Presses towards `aim_m` within 0.3 s, receives a pulse of 1 N at 0.6 s, holds still until 3 s, and leaves the
+  // surface within 0.3 s.
   Rest run(double aim_m) {
     Rest result;
     double next_sample = 0.0, lowest_m = 1.0, highest_m = -1.0;
-    for (double time_s = 0.0; time_s < 3.0; time_s = static_cast<double>(++step_) / kStepsPerS) {
+    constexpr double kLeaves_s = 3.0, kOut_s = 0.3;
+    for (double time_s = 0.0; time_s < kLeaves_s + 2.0 * kOut_s; time_s = static_cast<double>(++step_) / kStepsPerS) {
       if (static_cast<double>(step_) >= next_sample) {
         next_sample += kStepsPerS / link_.rate_Hz;
         sample();
@@ -61,10 +64,12 @@ class HandOnLink {
       deliver();
       if (step_ % 20 == 0) tick();
       if (step_ % 10 == 5) send_command();
-      const ClosedLoop::Drive drive = minimum_jerk(-2e-3, aim_m, 0.3, time_s);
-      const bool rest = time_s >= 2.0;
-      move(drive, time_s >= 0.6 && time_s < 0.62 ? 1.0 : 0.0, rest ? &result.given_J : nullptr);
-      if (!rest) continue;
+      const ClosedLoop::Drive drive = time_s < kLeaves_s ? minimum_jerk(-2e-3, aim_m, 0.3, time_s)
+                                                         : minimum_jerk(aim_m, -2e-3, kOut_s, time_s - kLeaves_s);
+      const double given_J = move(drive, time_s >= 0.6 && time_s < 0.62 ? 1.0 : 0.0);
+      result.returned_J += given_J;
+      if (time_s < kLeaves_s - 1.0 || time_s >= kLeaves_s) continue;
+      result.given_J += given_J;
       lowest_m = std::min(lowest_m, position_m_);
       highest_m = std::max(highest_m, position_m_);
       const auto share = static_cast<double>(snapshot_.stiffness_share);
@@ -152,7 +157,8 @@ class HandOnLink {
     commands_.push_back(frame);
     send(commands_, link_.command_group, down_);
   }
-  void move(const ClosedLoop::Drive& drive, double push_N, double* given_J) {
+  // Returns the energy from the device.
+  double move(const ClosedLoop::Drive& drive, double push_N) {
     const double force_N = (acting_.out.flags & bridge::kDrive) != 0 ? 1e-6 * acting_.out.force_uN : 0.0;
     const double drive_N = grip_.stiffness_N_per_m * (drive.aim_m - position_m_) +
                            grip_.damping_Ns_per_m * (drive.aim_m_per_s - velocity_m_per_s_) + push_N;
@@ -160,7 +166,7 @@ class HandOnLink {
     velocity_m_per_s_ += (drive_N - force_N) / grip_.mass_kg / kStepsPerS;
     const double way_m = 0.5 * (before_m_per_s + velocity_m_per_s_) / kStepsPerS;
     position_m_ += way_m;
-    if (given_J != nullptr) *given_J -= force_N * way_m;
+    return -force_N * way_m;
   }
 
   Link link_;

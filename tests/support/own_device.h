@@ -1,6 +1,8 @@
-// The first of the three files of a new device: a class of six functions. The tool is moved in and out by a motor.
+// An example of a new device: a class of six functions. The tool is moved in and out by a motor.
 #pragma once
 
+#include <cmath>
+#include <cstdlib>
 #include <memory>
 #include <string>
 
@@ -16,7 +18,13 @@ class OwnDevice final : public Device {
   SensorSpec sensor() const noexcept override { return {.encoder_step_m = 1e-6}; }
   Holder holder() const noexcept override { return Holder::person; }
   ForceLimits limits() const noexcept override { return {5.0, 2000.0, 0.05}; }
-  bool read(double now_s, DeviceSample& sample) noexcept override;
+  bool read(double now_s, DeviceSample& sample) noexcept override {
+    if (now_s == read_s_) return false;
+    read_s_ = now_s;
+    sample = {};
+    sample.tool = {now_s, stroke_m_ * std::sin(6.0 * now_s)};
+    return true;
+  }
   void write(double force_N) noexcept override { force_N_ = force_N; }
 
   double force_N() const noexcept { return force_N_; }
@@ -29,6 +37,10 @@ class OwnDevice final : public Device {
 };
 
 // The factory for its row in the table of devices.
-MadeDevice make_own_device(const std::string& stroke_mm, const DeviceRequest& request);
+inline MadeDevice make_own_device(const std::string& stroke_mm, const DeviceRequest&) {
+  const double stroke_m = 1e-3 * std::strtod(stroke_mm.c_str(), nullptr);
+  if (!(stroke_m > 0.0)) return Error{"--device own: found \"" + stroke_mm + "\", expected own:MILLIMETRES"};
+  return MadeDevice(std::make_unique<OwnDevice>(stroke_m));
+}
 
 }  // namespace palpate::test

@@ -15,7 +15,7 @@
 #include "devices/bridge/bridge_bus.h"
 #include "devices/firmware/bridge_firmware.h"
 #include "devices/hid/hidapi_bus.h"
-#include "devices/link/device_endpoint.h"
+#include "devices/link/device_link.h"
 #include "engine/live/live_tick.h"
 #include "tests/support/live_doubles.h"
 

@@ -127,6 +127,7 @@ void describe_model(auto& file, ModelData& data) {
     describe_each(file, "recording_ends", data.ends, 0, [&](RecordingEnds& one) {
       file.value("first_position_m", one.first_position_m);
       file.value("last_position_m", one.last_position_m);
+      describe_unless_0(file, "first_force_N", one.first_force_N);
       const auto size = static_cast<Eigen::Index>(memory_size(data.features));
       Eigen::VectorXd memory = Eigen::Map<const Eigen::VectorXd>(one.memory.data(), std::ssize(one.memory));
       file.numbers("memory", memory, size, "numbers, one for each low-pass and each part of a feature");

@@ -8,7 +8,6 @@
 #include <fstream>
 #include <iterator>
 #include <memory>
-#include <optional>
 
 #include "devices/bridge/bridge_bus.h"
 #include "tests/support/bridge_session.h"
@@ -259,6 +258,20 @@ TEST(BridgeLines, FewerThanOneHundredSamplesASecondAreRefusedAtTheStart) {
     ASSERT_FALSE(device.ok()) << rate_Hz;
     EXPECT_TRUE(test::has_parts(device.error().message,
                                 {words, " a second, expected 100 to 10000; raise the rate of the device's program"}));
+  }
+}
+
+TEST(BridgeLines, AWrongClockSequenceOrRateIsRefusedAtTheStart) {
+  const test::TemporaryFolder folder;
+  for (const auto& [mode, words] : {std::pair{"clock-s", "expected microseconds in bytes 8 to 11"},
+                                    {"clock-ms", "expected microseconds in bytes 8 to 11; it seems to count ms"},
+                                    {"clock-ns", "expected microseconds in bytes 8 to 11; it seems to count ns"},
+                                    {"clock-0", "expected microseconds in bytes 8 to 11; it stands still"},
+                                    {"uncounted", "does not increase by 1 with each; count them in bytes 4 to 7"},
+                                    {"fast", " samples a second, expected 100 to 10000; lower the rate"}}) {
+    const auto device = open_bridge("exec:python3 " + kPeer + " " + mode + " 9 " + folder.file("log"));
+    ASSERT_FALSE(device.ok()) << mode;
+    EXPECT_TRUE(test::has_parts(device.error().message, {words})) << mode;
   }
 }
 

@@ -2,7 +2,8 @@
 """A `bridge:` device with one fault: peer.py MODE AFTER_S LOG [unix PATH | tcp PORT | pty LINK].
 
 It holds its tool 3 mm inside, with tremor. AFTER_S after the first force it starts the fault MODE and
-writes "event SECONDS" to LOG. At the next force of 0 it writes "zero SECONDS". Times are CLOCK_MONOTONIC.
+writes "event SECONDS" to LOG. At the next force of 0 it writes "zero SECONDS". Times are CLOCK_MONOTONIC. With
+clock-s, clock-ms, clock-ns, clock-0, uncounted and fast it is wrong from the start.
 """
 import math, os, pty, select, socket, struct, sys, time, tty, zlib
 
@@ -74,11 +75,14 @@ def main():
         silent = now_s - heard_s > 0.05
         status = (2 if heard_s and silent else 0) | (8 if event and MODE == "own" else 0)
         version = 2 if event and MODE == "version" else 1
-        out = device_frame(sequence, int(now_s * 1e6), position_nm, status, confirmed, version)
+        count = 26 if MODE == "fast" else 1
+        unit = {"clock-s": 1, "clock-ms": 1e3, "clock-ns": 1e9, "clock-0": 0}.get(MODE, 1e6)
+        out = b"".join(device_frame(sequence + i, int((now_s + i / (count * RATE_HZ)) * unit), position_nm, status,
+                                    confirmed, version) for i in range(count))
         out = wrong(out, sequence, held) if event else out
         while out:
             out = out[os.write(sink, out):]
-        sequence += 1
+        sequence += 0 if MODE == "uncounted" else count
         until_s = max(now_s, start_s + 1.0 / RATE_HZ)
         start_s = until_s
         while select.select([source], [], [], max(0.0, until_s - time.monotonic()))[0]:

@@ -13,7 +13,7 @@
 #include <string_view>
 
 #include "devices/hid/hidapi_bus.h"
-#include "devices/link/device_endpoint.h"
+#include "devices/link/device_link.h"
 #include "engine/base/signals.h"
 #include "engine/live/pacer.h"
 #include "tests/devices/emulated/emulated_board.h"

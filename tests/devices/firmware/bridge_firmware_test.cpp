@@ -48,14 +48,6 @@ TEST(BridgeFirmware, SendsEverySampleAndDrivesAsAsked) {
   EXPECT_LT(device.now_us, 1'000'000u);
 }
 
-TEST(BridgeFirmware, SaysThatItHasNoForceSensor) {
-  Device device;
-  device.board.measured_uN = kNoForce;
-  device.push(300);
-  EXPECT_EQ(device.last.force_uN, kNoForce);
-  EXPECT_EQ(device.force_uN(), 300);
-}
-
 TEST(BridgeFirmware, StopsByItselfWithin50Milliseconds) {
   Device device;
   device.push(300);

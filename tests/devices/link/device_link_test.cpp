@@ -4,7 +4,6 @@
 
 #include <gtest/gtest.h>
 
-#include "devices/link/device_endpoint.h"
 #include "engine/live/haptics_loop.h"
 #include "tests/support/fake_device_bus.h"
 #include "tests/support/hid_ticks.h"

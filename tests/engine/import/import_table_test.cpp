@@ -197,6 +197,10 @@ TEST(ImportTable, OneReadingIsImported) {
       {"exponents of Fortran", table_of(kHeader, "%tD+00,%xD+00,%fD+00"), ""},
       {"lines that end with CR", all_replaced(kPlain, "\n", "\r"), ""},
       {"a constant column", table_of("Time (s),Distance (mm),Height (mm),F (N)", "%t,%x,12.0,%f"), ""},
+      {"bars between the fields", all_replaced(kPlain, ",", " | "), ""},
+      {"decimal commas between quotes",
+       all_replaced(table_of("\"t (s)\",\"x (mm)\",\"F (N)\"", "\"%t\",\"%x\",\"%f\""), ".", ","), ""},
+      {"two clocks with the same times", table_of("Time_P (s),x (mm),Time_F (s),F (N)", "%t,%x,%t,%f"), ""},
       {"a torque", table_of("t (s),z (mm),torque_nm,Mz (Nm),Fz (N)", "%t,%x,%f1,%f2,%f"), ""},
       {"a robot", table_of("t_s,z_mm,F_N", "%t,%x,%f"), ""},
       {"a chosen block", table_of(kHeader, "%t,9,9", 0, 20) + "\n" + kPlain, "--block 2"},
@@ -263,10 +267,15 @@ TEST(ImportTable, OtherwiseTheReadingsThatRemainAreCommands) {
            command + "--columns time=2  # \"t_us\": 1.99 s" + command + "--columns time=1  # \"host_s\": 199 s"},
       {"X_Columns\tNo\nDelta_X\t0.01\t0.1\nX0\t0\t0\nX_Value\tF (N)\tx (mm)\n" + table_of("", "\t%f\t%b"), "",
        "rig.txt: found two clocks, with a position every 0.1 s from 0 s on and a force every 0.01 s from 0 s on, "
-       "expected one interval; export both channels with one"},
+       "expected one, or a position that is fast enough to be interpolated; export both channels with one interval"},
       {table_of("specimen,t_s,x_mm,F_N", "%b,%t,%x,%f"), "",
        "rig.txt: found rows of 2 series that alternate, by column 1 \"specimen\" (1, 2), expected one; write the rows "
        "of each into a file of its own"},
+      {all_replaced(table_of("specimen,x_mm,F_N", "A,%x,%f", 0, 30) + table_of("", "B,%x,%f", 30, 60), "\n\n", "\n"),
+       "--rate 100",
+       "rig.txt: found rows of 2 series, by column 1 \"specimen\", expected one; choose the rows" + command +
+           "--rate 100 --rows 2-31  # A" + command + "--rate 100 --rows 32-61  # B" + command +
+           "--rate 100 --rows 2-61  # all as one recording"},
       {"Time (s),Position (m),Force (N)\ns,mm,N\n" + rows_of(0, kRows), "",
        "rig.txt:1: found two units of the position \"Position (m)\": m in the name and mm in the row of units, "
        "expected "
@@ -316,6 +325,22 @@ TEST(ImportTable, ARowThatIsLeftOutLeavesItsTime) {
   ASSERT_EQ(table->left_out.size(), 1u);
   EXPECT_EQ(row_words(*table),
             (std::vector<std::string>{"90 read, lines 2 to 101", "left out 10 rows (unreadable), lines 42 to 51"}));
+  // Also a row without any value, a line of text and an empty line, and one that only a count of the rows shows.
+  for (const char* lost : {"nan,nan", "overload", ""}) {
+    std::string all = "x (mm),F (N)\n";
+    for (int i = 0; i < 100; ++i)
+      all += (i >= 40 && i < 50 ? lost : fixed(position_mm(i), 3) + "," + fixed(force_N(i), 3)) + "\n";
+    EXPECT_NE(message(all, "--rate 100"), "accepted") << lost;
+    const auto kept = import_bytes(all, "--rate 100 --skip-bad-rows 10");
+    ASSERT_TRUE(kept.ok()) << kept.error().message;
+    EXPECT_EQ(kept->recording.rows.size(), 90u) << lost;
+    EXPECT_NEAR(kept->recording.rows.back().time_s, 0.99, 1e-9) << lost;
+  }
+  const std::string counted = table_of("seq,x (mm),F (N)", "%i,%x,%f", 0, 40) + table_of("", "%i,%x,%f", 50, 100);
+  const auto counts = import_bytes(counted, "--rate 100");
+  ASSERT_TRUE(counts.ok()) << counts.error().message;
+  EXPECT_NEAR(counts->recording.rows.back().time_s, 0.99, 1e-9);
+  EXPECT_TRUE(test::has_parts(joined(counts->notes), {"counts the rows and skips 10 of them"}));
   std::string coarse = "Time;x (mm);F (N)\n";
   for (int i = 0; i < 200; ++i)
     coarse += "12:30:" + std::to_string(10 + i / 20) + ";" + std::to_string(i) + ";" +
@@ -323,6 +348,22 @@ TEST(ImportTable, ARowThatIsLeftOutLeavesItsTime) {
   const auto clock = import_bytes(coarse, "--skip-bad-rows 1");
   ASSERT_TRUE(clock.ok()) << clock.error().message;
   EXPECT_NEAR(clock->recording.rows.back().time_s, 9.95, 1e-9);
+}
+
+// Two clocks become that of the faster channel where the slower one can be interpolated, and keep their offset.
+TEST(ImportTable, TwoExplicitClocksBecomeOne) {
+  std::string text = "Time_P (s),x (mm),Time_F (s),F (N)\n";
+  const auto x_mm = [](double t) { return 3.0 - 3.0 * std::cos(4.0 * t); };
+  for (int i = 0; i < 400; ++i)
+    text += (i < 200 ? fixed(0.004 + 0.02 * i, 3) + "," + fixed(x_mm(0.004 + 0.02 * i), 4) : std::string(",")) + "," +
+            fixed(0.01 * i, 2) + "," + fixed(2.0 * x_mm(0.01 * i), 4) + "\n";
+  const auto table = import_bytes(text);
+  ASSERT_TRUE(table.ok()) << table.error().message;
+  const auto& rows = table->recording.rows;
+  ASSERT_EQ(rows.size(), 398u);
+  for (const RecordingRow& row : rows) EXPECT_NEAR(2e3 * row.position_m, row.force_N, 0.03) << row.time_s;
+  EXPECT_EQ(row_words(*table).back(), "left out 2 rows (without a position at the time), lines 2 to 401");
+  EXPECT_TRUE(test::has_parts(joined(table->notes), {"warning: found two clocks", "the position is interpolated"}));
 }
 
 TEST(ImportTable, DayAndMonthAreDecidedOnceForTheColumn) {

@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "tests/support/message_parts.h"
@@ -25,19 +24,6 @@ TEST(JsonFields, SaysWhatWasFoundInFewCharacters) {
   EXPECT_EQ(found(Json::array({1, 2})), "found a list of 2");
   EXPECT_EQ(found(Json::object()), "found an object");
   EXPECT_LT(found(Json(std::string(1000, 'x'))).size(), 60u);
-}
-
-TEST(JsonFields, ARangeKnowsItsEnds) {
-  const NumberRange closed{0.05, 10.0};
-  EXPECT_TRUE(closed.holds(0.05) && closed.holds(10.0));
-  EXPECT_FALSE(closed.holds(0.049) || closed.holds(10.1) || closed.holds(std::nan("")));
-  EXPECT_EQ(closed.words(), "a number from 0.05 up to 10");
-  const NumberRange open{0.0, 1e9, true};
-  EXPECT_FALSE(open.holds(0.0));
-  EXPECT_EQ(open.words(), "a number above 0 up to 1e+09");
-  EXPECT_EQ(NumberRange{}.words(), "a number");
-  EXPECT_EQ(kNotNegative.words(), "a number, 0 or more");
-  EXPECT_EQ((NumberRange{0.0, kLargestNumber, true}).words(), "a number above 0");
 }
 
 TEST(JsonFields, SaysWhereAndWhyATextIsNoJson) {
@@ -74,12 +60,6 @@ TEST(JsonFields, NamesThePlaceOfAValue) {
     fields.complain(pointer, "found this");
     EXPECT_TRUE(test::has_parts(fields.error()->message, {std::string("x.json:") + place + ": "})) << pointer;
   }
-}
-
-TEST(JsonFields, NamesThePlaceBehindAByteOrderMark) {
-  JsonFields fields("\xEF\xBB\xBF{\"a\": 1}", kPath, "");
-  fields.complain("/a", "found this");
-  EXPECT_TRUE(test::has_parts(fields.error()->message, {"x.json:1:10: "}));
 }
 
 TEST(JsonFields, CollectsAllErrorsEachOnce) {

@@ -1,12 +1,22 @@
-// The haptics thread: its statistics, and its data shared with other threads.
 #include "engine/live/haptics_loop.h"
 
 #include <gtest/gtest.h>
 
+#include <cerrno>
+#include <limits>
+#include <thread>
+#include <utility>
+
+#include "engine/live/handover.h"
+#include "engine/live/pacer.h"
 #include "tests/support/live_doubles.h"
+#include "tests/support/message_parts.h"
+#include "tests/support/temporary_folder.h"
 
 namespace palpate {
 namespace {
+
+// The haptics thread: its statistics, and its data shared with other threads.
 
 using test::FakePacer;
 using test::PathDevice;
@@ -158,16 +168,306 @@ TEST(HapticsLoop, RunsBesideABusySlowSide) {
   loop.stop();  // a second call has no effect
 }
 
-TEST(HapticsLoop, IsStoppedByItsEnd) {
-  PathDevice device(test::held_5mm);
-  LoopSettings settings;
-  settings.realtime = false;
-  {
-    HapticsLoop loop(device, settings);
-    ASSERT_TRUE(loop.start().ok());
+// The exchange of data between two threads. The stress tests also run under the thread sanitizer.
+
+// A value is torn if its words differ.
+struct Words {
+  std::array<std::uint64_t, 40> all{};
+};
+
+Words words(std::uint64_t value) {
+  Words result;
+  result.all.fill(value);
+  return result;
+}
+
+TEST(TripleBuffer, GivesTheNewestOnceAndKeepsIt) {
+  TripleBuffer<int> buffer;
+  EXPECT_FALSE(buffer.refresh());
+  EXPECT_EQ(buffer.newest(), 0) << "nothing was written";
+  for (int i = 1; i <= 5; ++i) buffer.write(i);
+  EXPECT_TRUE(buffer.refresh());
+  EXPECT_EQ(buffer.value(), 5);
+  EXPECT_FALSE(buffer.refresh());
+  EXPECT_EQ(buffer.value(), 5);
+  buffer.write(6);
+  EXPECT_EQ(buffer.value(), 5) << "until it is asked to";
+  EXPECT_EQ(buffer.newest(), 6);
+}
+
+TEST(TripleBuffer, UnderStressIsNeverTornNeverBackwardsAndEndsWithTheNewest) {
+  constexpr std::uint64_t kLast = 200000;
+  TripleBuffer<Words> buffer;
+  std::thread writer([&] {
+    for (std::uint64_t i = 1; i <= kLast; ++i) buffer.write(words(i));
+  });
+  std::uint64_t seen = 0;
+  std::uint64_t torn = 0;
+  std::uint64_t backwards = 0;
+  while (seen < kLast) {
+    const bool fresh = buffer.refresh();
+    const Words& value = buffer.value();
+    for (const std::uint64_t word : value.all) torn += word != value.all[0] ? 1 : 0;
+    if (fresh ? value.all[0] <= seen : value.all[0] != seen) ++backwards;
+    seen = value.all[0];
   }
-  EXPECT_EQ(device.force_N(), 0.0);
-  EXPECT_GT(device.writes(), 0);
+  writer.join();
+  EXPECT_EQ(torn, 0u);
+  EXPECT_EQ(backwards, 0u);
+  EXPECT_FALSE(buffer.refresh());
+}
+
+TEST(SpscRing, KeepsOrderAndDropsTheNewWhenFull) {
+  SpscRing<int, 4> ring;
+  for (int i = 1; i <= 4; ++i) EXPECT_TRUE(ring.push(i));
+  EXPECT_FALSE(ring.push(5));
+  EXPECT_FALSE(ring.push(6));
+  EXPECT_EQ(ring.dropped(), 2u);
+  int value = 0;
+  for (int i = 1; i <= 4; ++i) {
+    ASSERT_TRUE(ring.pop(value));
+    EXPECT_EQ(value, i);
+  }
+  EXPECT_FALSE(ring.pop(value));
+  EXPECT_EQ(value, 4) << "as it was";
+  EXPECT_TRUE(ring.push(7));
+}
+
+TEST(SpscRing, HandsOutManyAcrossItsEnd) {
+  SpscRing<int, 8> ring;
+  std::array<int, 16> values{};
+  for (int i = 0; i < 6; ++i) ring.push(i);
+  EXPECT_EQ(ring.pop(values.data(), 5), 5u);
+  for (int i = 6; i < 13; ++i) EXPECT_TRUE(ring.push(i));
+  EXPECT_EQ(ring.pop(values.data(), values.size()), 8u);
+  for (int i = 0; i < 8; ++i) EXPECT_EQ(values[static_cast<std::size_t>(i)], i + 5);
+}
+
+TEST(SpscRing, UnderStressLosesOnlyWhatItCounts) {
+  constexpr std::uint64_t kLast = 300000;
+  struct Pair {
+    std::uint64_t value = 0;
+    std::uint64_t again = 0;
+  };
+  SpscRing<Pair, 64> ring;
+  std::uint64_t sent = 0;
+  std::thread producer([&] {
+    for (std::uint64_t i = 1; i <= kLast; ++i) sent += ring.push({i, i}) ? 1 : 0;
+    // Retries the last value until it is accepted.
+    while (!ring.push({kLast + 1, kLast + 1})) std::this_thread::yield();
+    ++sent;
+  });
+  std::array<Pair, 10> values;
+  std::uint64_t received = 0;
+  std::uint64_t wrong = 0;
+  std::uint64_t last = 0;
+  while (last <= kLast) {
+    const std::size_t count = ring.pop(values.data(), values.size());
+    for (std::size_t i = 0; i < count; ++i) {
+      if (values[i].value != values[i].again || values[i].value <= last) ++wrong;
+      last = values[i].value;
+    }
+    received += count;
+    if (count == 0) std::this_thread::yield();
+  }
+  producer.join();
+  EXPECT_EQ(wrong, 0u);
+  EXPECT_EQ(received, sent);
+  EXPECT_GE(ring.dropped() + sent, kLast + 1) << "the last one may have been dropped several times";
+}
+
+// A set of models, which counts how many exist and how many the tick deleted.
+std::atomic<int> alive{0};
+thread_local bool in_tick = false;
+std::atomic<int> deleted_in_tick{0};
+
+struct Set {
+  explicit Set(int n) : number(n), number_again(n) { ++alive; }
+  Set(const Set&) = delete;
+  Set& operator=(const Set&) = delete;
+  ~Set() {
+    --alive;
+    if (in_tick) ++deleted_in_tick;
+    number = -1;
+  }
+  int number;
+  int number_again;
+};
+
+TEST(ModelSlot, HandsOverTheNewestAndDeletesTheOthersOnTheSlowSide) {
+  {
+    ModelSlot<Set> slot;
+    EXPECT_EQ(slot.acquire(), nullptr);
+    slot.publish(std::make_unique<Set>(1));
+    slot.publish(std::make_unique<Set>(2));
+    EXPECT_EQ(alive, 1) << "the first was never taken";
+    std::unique_ptr<Set> taken = slot.acquire();
+    ASSERT_NE(taken, nullptr);
+    EXPECT_EQ(taken->number, 2);
+    EXPECT_EQ(slot.acquire(), nullptr);
+    slot.publish(std::make_unique<Set>(3));
+    slot.retire(std::move(taken));
+    EXPECT_EQ(alive, 2) << "not deleted by the tick";
+    EXPECT_EQ(slot.acquire(), nullptr) << "the retired one is not yet deleted";
+    EXPECT_TRUE(slot.collect());
+    EXPECT_FALSE(slot.collect());
+    slot.retire(slot.acquire());
+    slot.publish(std::make_unique<Set>(4));
+    EXPECT_EQ(alive, 1) << "publishing collects as well";
+    slot.retire(slot.acquire());
+    slot.publish(std::make_unique<Set>(5));
+  }
+  EXPECT_EQ(alive, 0) << "and so does the end";
+}
+
+TEST(ModelSlot, UnderStressEverySetIsDeletedOnceAndNeverInTheTick) {
+  constexpr int kLast = 20000;
+  deleted_in_tick = 0;
+  {
+    ModelSlot<Set> slot;
+    std::atomic<int> wrong{0};
+    std::thread haptics([&] {
+      in_tick = true;
+      auto current = std::make_unique<Set>(0);
+      while (current->number < kLast) {
+        std::unique_ptr<Set> next = slot.acquire();
+        if (next == nullptr) {
+          std::this_thread::yield();
+          continue;
+        }
+        if (next->number <= current->number || next->number != next->number_again) ++wrong;
+        slot.retire(std::exchange(current, std::move(next)));
+      }
+      in_tick = false;  // the last set is deleted by the end of the thread
+    });
+    for (int i = 1; i <= kLast; ++i) {
+      slot.publish(std::make_unique<Set>(i));
+      if (i % 3 == 0) std::this_thread::yield();
+    }
+    // Until the set before is deleted, the tick cannot take the last one.
+    while (alive > 0) {
+      slot.collect();
+      std::this_thread::yield();
+    }
+    haptics.join();
+    EXPECT_EQ(wrong, 0);
+  }
+  EXPECT_EQ(alive, 0);
+  EXPECT_EQ(deleted_in_tick, 0);
+}
+
+// The recorded ticks around a fault.
+
+LoopSnapshot tick_at(int index, bool fault) {
+  LoopSnapshot tick;
+  tick.rendered_N = index;
+  tick.faults = fault ? loop_fault::kDeviceFault : 0;
+  return tick;
+}
+
+// The tick at which the record of the next fault is complete; -1: none before `end`.
+int whole_at(FaultRecorder& recorder, int begin, int end, bool (*faulty)(int)) {
+  for (int i = begin; i < end; ++i) {
+    if (recorder.add(tick_at(i, faulty(i)))) return i;
+  }
+  return -1;
+}
+
+TEST(FaultRecorder, KeepsTheLastSecondAroundAFault) {
+  FaultRecorder recorder;
+  EXPECT_EQ(whole_at(recorder, 0, 5000, [](int i) { return i >= 4000 && i < 4050; }), 4100)
+      << "until the force is gone";
+  ASSERT_EQ(recorder.ticks().size(), FaultRecorder::kTicks);
+  EXPECT_EQ(recorder.ticks().back().rendered_N, 4100.0);
+  EXPECT_EQ(recorder.ticks().front().rendered_N, 3101.0);
+  EXPECT_EQ(whole_at(recorder, 4101, 9000, [](int) { return false; }), -1) << "told once";
+}
+
+TEST(FaultRecorder, TellsOfEveryFaultAndOfWhatThereIs) {
+  FaultRecorder recorder;
+  const auto faulty = [](int i) { return i == 500 || i == 550 || i == 2000; };
+  EXPECT_EQ(whole_at(recorder, 0, 3000, faulty), 600);
+  EXPECT_EQ(recorder.ticks().size(), 601u) << "the loop had not run for a second";
+  EXPECT_EQ(whole_at(recorder, 601, 3000, faulty), 2100) << "550 was part of the first";
+}
+
+TEST(FaultRecorder, WhatDoesNotStopTheForceIsNoFault) {
+  FaultRecorder recorder;
+  LoopSnapshot tick;
+  tick.faults = loop_fault::kForceClamped | loop_fault::kDeadlineMissed;
+  for (int i = 0; i < 500; ++i) EXPECT_FALSE(recorder.add(tick));
+}
+
+TEST(FaultRecorder, WritesATable) {
+  const test::TemporaryFolder folder;
+  LoopSnapshot tick;
+  tick.loop_time_s = 1.5;
+  tick.tick.position_m = 2.5e-3;
+  tick.commanded_N = 3.0;
+  tick.device.sample_age_s = 0.0;
+  tick.faults = 256;
+  tick.device.faults = 1;
+  tick.samples = 1;
+  ASSERT_TRUE(write_fault_file(folder.file("fault.csv"), {tick, tick}).ok());
+  const std::string line = "1.5,0,0.0025,0,3,0,0,0,1,256,1,0\n";
+  EXPECT_EQ(test::read_text(folder.file("fault.csv")),
+            "loop_time_s,sample_time_s,position_m,velocity_m_per_s,commanded_N,rendered_N,sample_age_s,"
+            "delay_ms,samples,faults,device_faults,limiter_flags\n" +
+                line + line);
+  EXPECT_FALSE(write_fault_file(folder.file("fault.csv"), {}).ok()) << "never writes over";
+}
+
+// The advice if the system refuses real-time priority.
+
+TEST(RtThread, SaysWhatWasObtained) {
+  RtStatus status;
+  std::thread([&] { status = make_this_thread_realtime(1, false); }).join();
+  EXPECT_EQ(status.scheduling, status.realtime ? "SCHED_FIFO 1" : "normal");
+  EXPECT_EQ(status.fix.empty(), status.realtime);
+  EXPECT_EQ(realtime_advice(0, 0, false), "");
+}
+
+TEST(RtThread, ARefusalComesWithTheExactFix) {
+  const std::string advice = realtime_advice(EPERM, ENOMEM, false);
+  EXPECT_TRUE(test::has_parts(
+      advice, {"Operation not permitted", "Cannot allocate memory", "/etc/security/limits.conf", " - rtprio 90\n",
+               " - memlock unlimited\n", "sudo setcap cap_sys_nice,cap_ipc_lock=ep /"}));
+}
+
+TEST(RtThread, RootInAContainerIsToldAboutTheContainer) {
+  const std::string advice = realtime_advice(EPERM, 0, true);
+  EXPECT_TRUE(test::has_parts(advice, {"--cap-add=SYS_NICE"}));
+  EXPECT_FALSE(test::has_parts(advice, {"setcap cap"}));
+  EXPECT_FALSE(test::has_parts(advice, {"locked memory"}));
+}
+
+// Percentiles from a histogram, without storing the times.
+
+TEST(TimeHistogram, GivesPercentilesWithinABin) {
+  TimeHistogram histogram;
+  for (std::int64_t time_us = 1; time_us <= 10000; ++time_us) histogram.add(1000 * time_us);
+  const TimePercentiles result = histogram.percentiles();
+  EXPECT_EQ(result.count, 10000u);
+  // Bins are a 32nd of an octave, 3.2 % wide; a percentile is the upper edge of its bin.
+  EXPECT_NEAR(result.p50_us, 5000.0, 0.032 * 5000.0);
+  EXPECT_NEAR(result.p99_us, 9900.0, 0.032 * 9900.0);
+  EXPECT_NEAR(result.p99_9_us, 9990.0, 0.032 * 9990.0);
+  EXPECT_GE(result.p99_us, 9900.0) << "never flattering";
+  EXPECT_EQ(result.max_us, 10000.0);
+}
+
+TEST(TimeHistogram, TakesEveryTimeThereIs) {
+  TimeHistogram histogram;
+  EXPECT_EQ(histogram.percentiles().count, 0u);
+  EXPECT_EQ(histogram.percentiles().max_us, 0.0);
+  for (int bit = 0; bit < 63; ++bit) {
+    histogram.add(std::int64_t{1} << bit);
+    histogram.add((std::int64_t{1} << bit) - 1);
+  }
+  histogram.add(std::numeric_limits<std::int64_t>::max());
+  histogram.add(-5);
+  EXPECT_EQ(histogram.percentiles().count, 128u);
+  EXPECT_EQ(histogram.percentiles().max_us, 1e-3 * 9223372036854775807.0);
 }
 
 }  // namespace

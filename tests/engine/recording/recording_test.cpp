@@ -3,6 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <clocale>
+#include <cstring>
+#include <filesystem>
+#include <limits>
+#include <random>
 
 #include "engine/base/text.h"
 #include "tests/support/broken_recordings.h"
@@ -67,20 +71,6 @@ TEST(Recording, AcceptsCommentsBeforeTheHeaderAndBlankLinesAtTheEnd) {
   expect_good_rows(accepted(test::good_recording() + "\n \t\r\n\n"));
 }
 
-TEST(Recording, AcceptsALineOf64KiB) {
-  const std::string longest = "#" + std::string(kMaximumLineBytes - 1, ' ');
-  for (const std::string start : {"", "\xEF\xBB\xBF"})
-    expect_good_rows(accepted(start + longest + "\r\n" + test::good_recording()));
-}
-
-TEST(Recording, ReportsAStreamThatFails) {
-  // A folder can be opened as a file, but not be read.
-  std::ifstream folder("/");
-  const auto recording = read_recording(folder, "x.csv");
-  ASSERT_FALSE(recording.ok());
-  EXPECT_TRUE(test::has_parts(recording.error().message, {"x.csv: ", "Is a"}));
-}
-
 TEST(Recording, AcceptsColumnsInAnyOrderAndIgnoresFurtherOnes) {
   std::string text = "note,acceleration_m_per_s2,force_N,\xC2\xB5,velocity_m_per_s,time_s,position_m,\n";
   for (int i = 0; i < 10; ++i) {
@@ -96,28 +86,6 @@ TEST(Recording, AcceptsColumnsInAnyOrderAndIgnoresFurtherOnes) {
   EXPECT_EQ(row.force_N, 2.0);
   EXPECT_EQ(row.velocity_m_per_s, 4.0);
   EXPECT_EQ(row.acceleration_m_per_s2, -3.0);
-}
-
-TEST(Recording, AcceptsBlanksPlusSignsAndExponents) {
-  std::string text = test::good_header();
-  for (int i = 0; i < 10; ++i) text += " +" + std::to_string(i) + "e-3\t, -.5 ,\t1.E1 \n";
-  const Recording recording = accepted(text);
-  ASSERT_EQ(recording.rows.size(), 10u);
-  EXPECT_EQ(recording.rows[9].time_s, 0.009);
-  EXPECT_EQ(recording.rows[9].position_m, -0.5);
-  EXPECT_EQ(recording.rows[9].force_N, 10.0);
-}
-
-TEST(Recording, AcceptsALongSlowRecordingWithAGap) {
-  std::string text = test::good_header();
-  for (int i = 0; i < 2000; ++i) {
-    const int tenths = i < 1000 ? i : i + 600;  // 10 Hz; nothing for a minute
-    text += std::to_string(tenths / 10) + "." + std::to_string(tenths % 10) + ",0.001,0.5\n";
-  }
-  const Recording recording = accepted(text);
-  ASSERT_EQ(recording.rows.size(), 2000u);
-  EXPECT_EQ(recording.rows[999].time_s, 99.9);
-  EXPECT_EQ(recording.rows[1000].time_s, 160.0);
 }
 
 // A German locale, if the machine has one, while the object lives.
@@ -140,6 +108,174 @@ TEST(Recording, ReadsDecimalPointsWhateverTheLocale) {
   const GermanNumbers german;
   if (!german.active()) GTEST_SKIP() << "no German locale on this machine";
   expect_good_rows(accepted(test::good_recording()));
+}
+
+// The final verdict of the rules on `count` rows, `step_s` apart, with a gap of a minute after the fourth.
+std::optional<RowFault> verdict(int count, double step_s) {
+  RowRules rules;
+  for (int i = 0; i < count; ++i) {
+    if (auto fault = rules.check({i * step_s + (i > 3 ? 60.0 : 0.0), 0.0, 0.0, 0.0, 0.0})) return fault;
+  }
+  return rules.finish();
+}
+
+TEST(RowRules, AllowFivePercentBeyondTheRangeOfRates) {
+  for (const int count : {10, 999, 1000, 1001}) {
+    EXPECT_FALSE(verdict(count, 0.104).has_value()) << count;
+    EXPECT_TRUE(verdict(count, 0.106).has_value()) << count;
+    EXPECT_FALSE(verdict(count, 48e-6).has_value()) << count;
+    EXPECT_TRUE(verdict(count, 47e-6).has_value()) << count;
+  }
+}
+
+// Rows at 1 kHz whose values use all 53 bits.
+Recording random_recording(std::size_t rows, RecordingColumns columns) {
+  std::mt19937_64 random(20090319);
+  std::uniform_real_distribution<double> jitter(0.0005, 0.0015);
+  std::uniform_real_distribution<double> unit(-1.0, 1.0);
+  Recording recording{"rec", columns, {}};
+  double time_s = 0.0;
+  for (std::size_t i = 0; i < rows; ++i) {
+    time_s += jitter(random);
+    recording.rows.push_back({time_s, 0.02 * unit(random), 6.0 * unit(random), columns.velocity ? unit(random) : 0.0,
+                              columns.acceleration ? 40.0 * unit(random) : 0.0});
+  }
+  return recording;
+}
+
+void expect_same_bits(const Recording& a, const Recording& b) {
+  ASSERT_EQ(a.rows.size(), b.rows.size());
+  EXPECT_EQ(a.columns.velocity, b.columns.velocity);
+  EXPECT_EQ(a.columns.acceleration, b.columns.acceleration);
+  for (std::size_t i = 0; i < a.rows.size(); ++i)
+    ASSERT_EQ(std::memcmp(&a.rows[i], &b.rows[i], sizeof(RecordingRow)), 0) << "row " << i;
+}
+
+void expect_round_trip(const Recording& recording) {
+  const TemporaryFolder folder;
+  const std::string path = folder.file("rec.csv");
+  const Status written = write_recording(path, recording, {"a rig", "two\nlines"}, false);
+  ASSERT_TRUE(written.ok()) << written.error().message;
+  const auto read = read_recording(path);
+  ASSERT_TRUE(read.ok()) << read.error().message;
+  EXPECT_EQ(read->name, "rec");
+  expect_same_bits(*read, recording);
+  EXPECT_EQ(folder.entries(), std::vector<std::string>{"rec.csv"});
+}
+
+std::string message_for(const Recording& recording) {
+  const TemporaryFolder folder;
+  const Status written = write_recording(folder.file("rec.csv"), recording, {}, false);
+  EXPECT_TRUE(folder.entries().empty());
+  return written ? "written" : written.error().message.substr(folder.path().size() + 1);
+}
+
+TEST(WriteRecording, ReadsBackTheSameBitsWithEverySetOfColumns) {
+  for (const bool velocity : {false, true}) {
+    for (const bool acceleration : {false, true}) {
+      expect_round_trip(random_recording(20000, {velocity, acceleration}));
+    }
+  }
+}
+
+TEST(WriteRecording, WritesPlainTextWithCommentsFirst) {
+  Recording recording{"rec", {true, false}, {}};
+  for (int i = 0; i < 10; ++i) recording.rows.push_back({i * 0.5e-3, 0.25, -1.5, 2.0, 9.0});
+  const TemporaryFolder folder;
+  const std::string path = folder.file("rec.csv");
+  ASSERT_TRUE(write_recording(path, recording, {"seed 1", "a\r\tb"}, false).ok());
+  const std::string text = test::read_text(path);
+  EXPECT_TRUE(
+      text.starts_with("# seed 1\n# a  b\ntime_s,position_m,force_N,velocity_m_per_s\n"
+                       "0,0.25,-1.5,2\n5e-04,0.25,-1.5,2\n"))
+      << text;
+  EXPECT_TRUE(text.ends_with("\n"));
+}
+
+TEST(WriteRecording, RefusesWhatTheReaderWouldRefuse) {
+  const Recording good = random_recording(12, {});
+  Recording bad = good;
+  bad.rows[4].force_N = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_TRUE(test::has_parts(message_for(bad), {"rec.csv", "row 5", "force_N nan", "finite", "; "}));
+  bad = good;
+  bad.rows[4].time_s = bad.rows[3].time_s = 0.25;
+  EXPECT_TRUE(test::has_parts(message_for(bad), {"rec.csv", "row 5", "time_s 0.25", "0.25", "time_s"}));
+  bad = good;
+  bad.rows.resize(9);
+  EXPECT_TRUE(test::has_parts(message_for(bad), {"rec.csv", "9 rows", "10", "; "}));
+}
+
+TEST(RecordingWriter, GivesTheSameFileRowByRowAndLeavesOutWhatIsRefused) {
+  const TemporaryFolder folder;
+  const Recording recording = random_recording(5000, {true, false});
+  ASSERT_TRUE(write_recording(folder.file("whole.csv"), recording, {"a comment"}, false).ok());
+  auto writer = RecordingWriter::create(folder.file("rows.csv"), recording.columns, {"a comment"}, false);
+  ASSERT_TRUE(writer.ok());
+  for (const RecordingRow& row : recording.rows) {
+    ASSERT_TRUE(writer->add(row));
+    ASSERT_FALSE(writer->add(row)) << "the same time again";
+  }
+  RecordingRow far = recording.rows.back();
+  far.time_s += 1.0;
+  far.position_m = 2.0;
+  EXPECT_FALSE(writer->add(far));
+  EXPECT_EQ(writer->rows(), 5000u);
+  ASSERT_TRUE(writer->commit().ok());
+  EXPECT_EQ(test::read_text(folder.file("rows.csv")), test::read_text(folder.file("whole.csv")));
+}
+
+Result<RecordingWriter> writer_in_part(const test::TemporaryFolder& folder, bool overwrite) {
+  return RecordingWriter::create(folder.file("a.csv"), {}, {"first"}, overwrite, true);
+}
+
+TEST(RecordingWriter, ANameThatIsBeingWrittenIsRefusedAtTheStart) {
+  const test::TemporaryFolder folder;
+  {
+    const auto first = writer_in_part(folder, false);
+    ASSERT_TRUE(first.ok());
+    for (const bool overwrite : {false, true}) {
+      EXPECT_EQ(
+          writer_in_part(folder, overwrite).error().message,
+          folder.file("a.csv.part") + ": another program is writing it; choose another name, or end that program");
+    }
+  }
+  EXPECT_TRUE(writer_in_part(folder, false).ok()) << "the first one was given up";
+}
+
+// As after a kill: the rows of the part are whole, and only --force replaces them.
+TEST(RecordingWriter, ThePartOfAKilledProgramIsKept) {
+  const test::TemporaryFolder folder;
+  const std::string part = folder.file("a.csv.part");
+  {
+    auto writer = test::must(writer_in_part(folder, false));
+    for (int i = 0; i < 2000; ++i) ASSERT_TRUE(writer.add({1e-3 * i, 0.0, 0.0, 0.0, 0.0}));
+    ASSERT_TRUE(writer.flush());
+    EXPECT_EQ(writer.flushed_rows(), 2000u);
+    std::filesystem::copy(part, folder.file("killed"));
+  }
+  EXPECT_EQ(folder.entries(), std::vector<std::string>{"killed"});
+  std::filesystem::rename(folder.file("killed"), part);
+  EXPECT_EQ(test::must(read_recording(part)).rows.size(), 2000u);
+  EXPECT_EQ(writer_in_part(folder, false).error().message,
+            part + " is left from a program that was killed; rename it to keep it, or delete it");
+  EXPECT_TRUE(writer_in_part(folder, true).ok());
+}
+
+TEST(RecordingWriter, WritesNotesAboveTheRows) {
+  const test::TemporaryFolder folder;
+  auto writer = test::must(writer_in_part(folder, false));
+  for (int i = 0; i < 2000; ++i) {
+    ASSERT_TRUE(writer.add({1e-3 * i, 0.0, 0.0, 0.0, 0.0}));
+    if (i % 80 == 40) writer.note("note " + std::to_string(i));
+    if (i == 1500) {
+      ASSERT_TRUE(writer.flush());
+    }
+  }
+  ASSERT_TRUE(writer.commit());
+  EXPECT_TRUE(test::has_parts(test::read_text(folder.file("a.csv")),
+                              {"# note 40\n# note 120\n", "# 5 more such notes\n# first\ntime_s,"}));
+  EXPECT_EQ(test::must(read_recording(folder.file("a.csv"))).rows.size(), 2000u);
+  EXPECT_EQ(folder.entries(), std::vector<std::string>{"a.csv"});
 }
 
 }  // namespace

@@ -34,18 +34,6 @@ TEST(Features, FreeAirForgetsStopsAndCreepGoesOnInIt) {
   EXPECT_NEAR(filter.vector().values[0], stiffening().at(5e-5) * 0.5, 1e-15) << "bristles arrive unbent";
 }
 
-// dq/dt = -(q / tau) (q / r)^2 has the solution q = q_0 / sqrt(1 + 2 (t / tau) (q_0 / r)^2).
-// The result does not depend on the step length.
-TEST(Features, CreepFallsWithTheRootOfTime) {
-  FeatureFilter filter({creep({0.5}, {5e-3, {1.0, 0.0, 0.0, 0.0}})});
-  feed(filter, 0.0, 0.0);
-  const double first = feed(filter, 1e-6, 4e-3).values[0];
-  EXPECT_NEAR(first, 0.8 * 0.8, 1e-6);
-  for (const double t : {0.01, 0.1, 3.0, 500.0}) {
-    EXPECT_NEAR(feed(filter, t, 4e-3).values[0], first / std::sqrt(1.0 + 2.0 * t / 0.5 * 0.64), 1e-5 * first) << t;
-  }
-}
-
 // The work of a closed cycle after the transient, by the trapezoidal rule.
 double work_of_a_cycle(const FeatureSpec& spec, double duration_s, int steps) {
   FeatureFilter filter({spec});
@@ -71,21 +59,6 @@ TEST(Features, AClosedCycleNeverGivesBackMoreThanItTook) {
     EXPECT_GT(work_of_a_cycle(stops({1e-4}, saturating), duration_s, 20000), 0.0);
     EXPECT_GT(work_of_a_cycle(spectrum({0.01, 0.1, 1.0}, stiffening()), duration_s, 20000), 0.0);
   }
-}
-
-TEST(Features, UnevenStepsOfARampGiveTheSameAsEvenOnes) {
-  const double tau_s = 0.3;
-  FeatureFilter filter({lowpass(tau_s), spectrum({tau_s}, {2e-3, {0.5, 0.0, 0.0, 0.0}})});
-  feed(filter, 0.0, 0.0);
-  double t = 0.0;
-  for (int i = 0; i < 400; ++i) {
-    t += 1e-3 * (1.0 + 0.9 * std::sin(1.7 * i));
-    feed(filter, t, 0.01 * t);
-  }
-  const double rise = 0.01 * (1.0 - std::exp(-t / tau_s));
-  EXPECT_NEAR(filter.vector().values[0], rise, 0.01 * kRounding);
-  // A linear drive curve continues linearly beyond 2 mm: 0.5 N / 2 mm x tau x rise.
-  EXPECT_NEAR(filter.vector().values[1], 250.0 * tau_s * rise, kRounding);
 }
 
 // The discretisation is exact for linear motion between samples. Here the depth

@@ -95,22 +95,16 @@ TEST(HapticsTick, GivesNoForceOutOfContact) {
   EXPECT_GT(outside, 500);
 }
 
-TEST(HapticsTick, ModelsOfTheSameFeaturesShareAFilter) {
-  const HapticsTick tick({}, test::example_force_models());
-  EXPECT_EQ(&tick.features_of(0), &tick.features_of(1));
-  EXPECT_EQ(&tick.features_of(0), &tick.features_of(8));
-  EXPECT_NE(&tick.features_of(0), &tick.features_of(3));
-}
-
-TEST(HapticsTick, OneModelsForceDoesNotDependOnItsNeighbours) {
-  const ForceModels all = test::example_force_models();
-  HapticsTick together({30e-6, 0.0}, all);
-  std::vector<HapticsTick> alone;
-  for (const auto& model : all) alone.emplace_back(SensorSpec{30e-6, 0.0}, ForceModels{model});
-  for (const RecordingRow& row : test::example_recording(2000, 1000.0, 30e-6).rows) {
-    const TickSnapshot snapshot = together.step(tool_sample(row));
-    for (std::size_t m = 0; m < all.size(); ++m) {
-      ASSERT_EQ(snapshot.force_N[m], alone[m].step(tool_sample(row)).force_N[0]);
+TEST(HapticsTick, AModelWithoutABoundHasNoneInContact) {
+  ModelData data = test::example_model("trend", KernelKind::cubic, test::maxwell_features(), 3);
+  data.error_bound.reset();
+  for (const std::size_t first : {std::size_t{0}, std::size_t{1900}}) {  // the second begins in mid-press
+    HapticsTick tick({}, {fitted(data)});
+    const Recording recording = test::example_recording(4000, 1000.0);
+    for (std::size_t i = first; i < recording.rows.size(); ++i) {
+      tick.step(tool_sample(recording.rows[i]));
+      const TickSnapshot& found = tick.assess();
+      ASSERT_EQ(std::isnan(found.predicted_error_N[0]), found.in_contact) << i;
     }
   }
 }

@@ -13,11 +13,5 @@ TEST(JndLine, IsThePapersConservativeLine) {
   EXPECT_DOUBLE_EQ(line.at(-2.5), line.at(2.5));
 }
 
-TEST(JndLine, ErrorIsRelativeToTheMeasuredForce) {
-  const JndLine line;
-  EXPECT_NEAR(line.error_over_jnd(1.0 + line.at(1.0), 1.0), 1.0, 1e-14);
-  EXPECT_DOUBLE_EQ(line.error_over_jnd(1.0, 1.0), 0.0);
-}
-
 }  // namespace
 }  // namespace palpate

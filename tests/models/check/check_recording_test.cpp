@@ -60,13 +60,6 @@ void first_seconds(Recording& recording, double from_s, double seconds) {
                 [&](const RecordingRow& row) { return row.time_s < from_s || row.time_s > from_s + seconds; });
 }
 
-TEST(CheckRecording, WarnsOfNoForceThatAMachineReaches) {
-  Recording recording = silicone();
-  each(recording, [](RecordingRow& row) { row.force_N *= 100.0; });  // 700 N
-  const RecordingCheck check = checked(recording, kSilicone);
-  EXPECT_EQ(find(check, "force_unit"), nullptr) << all_of(check);
-}
-
 // Time in air between two presses is not a hold, although the tool comes back to where it left the surface.
 TEST(CheckRecording, AHoldIsInContact) {
   Recording recording;
@@ -168,36 +161,6 @@ TEST(CheckRecording, FindsEachFaultWhichItsAdviceRemoves) {
   }
 }
 
-// A cable with an elongation of 46 um, measured at absolute positions.
-TEST(CheckRecording, AdviceScalesWithTheRecording) {
-  Recording cable;
-  for (int i = 0; i < 20000; ++i) {
-    const double pressed_m = 23e-6 * (1.0 - std::cos(2e-3 * i));
-    cable.rows.push_back({1e-2 * i, 17.2e-3 + pressed_m, 1e5 * pressed_m, 0.0, 0.0});
-  }
-  const RecordingCheck check = checked(cable, CheckRequest{});
-  const Finding* const strokes = find(check, "strokes");
-  ASSERT_NE(strokes, nullptr) << all_of(check);
-  EXPECT_GT(strokes->value, 5.0) << all_of(check);
-  EXPECT_NE(strokes->text.find("from 17.2 to 17.25 mm"), std::string::npos) << strokes->text;
-  const Finding* const explored = find(check, "explored");
-  ASSERT_NE(explored, nullptr) << all_of(check);
-  EXPECT_EQ(explored->advice.find("50 mm/s"), std::string::npos) << explored->advice;
-}
-
-TEST(CheckRecording, NamesTheRowsThatWereLeftOut) {
-  RecordingFaults faults;
-  faults.rows = 20000;
-  faults.position_dropouts = 300;
-  faults.update_step_s = 0.044;
-  const RecordingCheck check = checked(silicone(), kSilicone, faults);
-  const Finding* const dropouts = find(check, "dropouts");
-  ASSERT_NE(dropouts, nullptr);
-  EXPECT_NEAR(dropouts->value, 0.015, 1e-12);
-  EXPECT_EQ(find(check, "repeated_positions")->value, 0.044);
-  EXPECT_STREQ(check.verdict(), "care");
-}
-
 TEST(CheckRecording, TellsTheMassThatTheForceSensorCarries) {
   Recording heavy = silicone();
   each(heavy, [](RecordingRow& row) { row.force_N += 0.06 * row.acceleration_m_per_s2; });
@@ -245,49 +208,6 @@ TEST(CheckRecording, WithoutFreeAirNothingIsToldOfSurfaceAndZero) {
   }
 }
 
-TEST(CheckRecording, CountsNoStrokesWithoutContact) {
-  Recording outside;
-  for (int i = 0; i < 8000; ++i) {
-    const double position_m = -0.05 - 2.5e-3 * std::cos(2e-3 * 3.0 * i);
-    outside.rows.push_back({2e-3 * i, position_m, 500.0 * (position_m + 0.055), 0.0, 0.0});
-  }
-  const RecordingCheck check = checked(outside, CheckRequest{});
-  ASSERT_NE(find(check, "no_contact"), nullptr) << all_of(check);
-  EXPECT_EQ(find(check, "strokes")->value, 0.0) << all_of(check);
-}
-
-// A material that softens with depth looks like a flipped sign, so this is only a warning.
-TEST(CheckRecording, OnlyWarnsOfSignsWhereAMaterialMayBeLikeThat) {
-  Recording softening;
-  for (int i = 0; i < 1000; ++i) {
-    const double share = 1e-3 * i;
-    const double force_N = share < 0.2 ? 0.2 + 8.0 * share : 1.8 - 1.9 * (share - 0.2);
-    softening.rows.push_back({1e-2 * i, 2e-3 * share, force_N, 0.0, 0.0});
-  }
-  const RecordingCheck check = checked(softening, CheckRequest{});
-  EXPECT_STRNE(check.verdict(), "unusable") << all_of(check);
-}
-
-// The advice for one wrong sign must not undo the remedy for the other.
-TEST(CheckRecording, AdviceForBothSignsIsToReverseBoth) {
-  const auto advice = [](bool position, bool force, const char* code) {
-    Recording recording = silicone();
-    for (RecordingRow& row : recording.rows) {
-      if (position) row.position_m = -row.position_m;
-      if (force) row.force_N = -row.force_N;
-    }
-    const RecordingCheck check = checked(recording, kSilicone);
-    const Finding* const finding = find(check, code);
-    return finding != nullptr ? finding->advice : "none";
-  };
-  for (const char* code : {"position_sign", "force_sign"}) {
-    EXPECT_NE(advice(true, true, code).find("reverse both signs (palpate import --flip both)"), std::string::npos);
-  }
-  EXPECT_NE(advice(true, false, "position_sign").find("--flip position, or --flip both if"), std::string::npos);
-  EXPECT_NE(advice(false, true, "force_sign").find("--flip force, or --flip both if"), std::string::npos);
-  EXPECT_EQ(advice(true, false, "force_sign"), "none");
-}
-
 // The highest value of a quantised or held force is no limit of the sensor; a limit is found in all of them.
 TEST(CheckRecording, TellsAHeldOrQuantisedTopFromClipping) {
   const auto change = [](double limit_N, double step_N, std::size_t rows) {
@@ -310,22 +230,6 @@ TEST(CheckRecording, TellsAHeldOrQuantisedTopFromClipping) {
       const RecordingCheck limited = change(0.5 * peak_N, step_N, rows);
       EXPECT_NE(find(limited, "clipping"), nullptr) << place << "\n" << all_of(limited);
     }
-  }
-}
-
-TEST(CheckRecording, CountsStrokesAlikeAtEveryRate) {
-  for (const double rate_Hz : {10.0, 100.0, 2000.0}) {
-    Recording recording;
-    const auto rows = static_cast<int>(20.0 * rate_Hz);
-    for (int i = 0; i < rows; ++i) {
-      const double time_s = i / rate_Hz;
-      const double depth_m = 5e-3 * (1.0 - std::cos(2.0 * 3.141592653589793 * 0.25 * time_s)) - 1e-3;
-      recording.rows.push_back({time_s, depth_m, 300.0 * std::max(0.0, depth_m), 0.0, 0.0});
-    }
-    const RecordingCheck check = checked(recording, CheckRequest{});
-    const Finding* const strokes = find(check, "strokes");
-    ASSERT_NE(strokes, nullptr) << all_of(check);
-    EXPECT_EQ(strokes->value, 5.0) << rate_Hz;
   }
 }
 

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <utility>
 
 #include "scenes/material/rig.h"
 #include "tests/support/fitting.h"
@@ -56,28 +55,6 @@ TEST(Contradiction, NamesTheDifferenceOfTheForces) {
   EXPECT_NEAR(*offset_N, 2.8, 0.2);
   EXPECT_TRUE(contradiction_N(strokes(1000.0), strokes(3000.0)));
   EXPECT_FALSE(contradiction_N(strokes(1000.0), changed(strokes(1000.0), 0.0, 0.05)));
-}
-
-// With more friction the medians of loading and unloading differ, and those of both together overlap.
-TEST(Contradiction, FrictionIsNone) {
-  Recording rough = strokes(1000.0);
-  for (std::size_t i = 0; i < rough.rows.size(); ++i)
-    rough.rows[i].force_N += std::sin(4e-3 * static_cast<double>(i)) > 0.0 ? 1.0 : -1.0;
-  EXPECT_FALSE(contradiction_N(strokes(1000.0), rough));
-}
-
-TEST(Contradiction, NeedsCommonPositions) {
-  EXPECT_FALSE(contradiction_N(strokes(1000.0), changed(strokes(1000.0), 5.5e-3, 2.8)));
-  Recording rest = strokes(1000.0);
-  for (RecordingRow& row : rest.rows) row.position_m = 1e-3;
-  EXPECT_FALSE(contradiction_N(rest, rest));
-  // So few rows that most bins are empty.
-  Recording first = strokes(1000.0), second = strokes(3000.0);
-  for (Recording* one : {&first, &second}) {
-    const std::vector<RecordingRow> all = std::exchange(one->rows, {});
-    for (std::size_t i = 0; i < 750; i += 25) one->rows.push_back(all[i]);
-  }
-  EXPECT_FALSE(contradiction_N(first, second));
 }
 
 }  // namespace

@@ -23,33 +23,5 @@ TEST(NoiseFloor, IsThatOfANormalErrorAtOneForce) {
   EXPECT_NEAR(floor.p99_error_over_jnd, 2.576 * noise_over_jnd, 0.03);
 }
 
-TEST(NoiseFloor, OutOfContactCountsNothing) {
-  Recording recording;
-  for (int i = 0; i < 100; ++i) recording.rows.push_back({1e-3 * i, -1e-3, 0.0});
-  EXPECT_EQ(noise_floor({prepare_recording(recording).get()}, JndLine{}).within_jnd, 1.0);
-}
-
-TEST(NoiseFloor, ContactCountsFromTheSurface) {
-  // A spring with noise whose surface is at 1 mm; the force of the air is 0.2 N.
-  Recording recording;
-  RandomStream random(1, 0);
-  for (int i = 0; i < 20000; ++i) {
-    const double position_m = 2e-3 * (1.0 - std::cos(1e-3 * i)) - 0.5e-3;
-    recording.rows.push_back(
-        {1e-3 * i, position_m, 0.2 + 2000.0 * std::max(0.0, position_m - 1e-3) + 0.05 * random.normal()});
-  }
-  const PreparedRecordingPointer prepared = prepare_recording(recording);
-  ASSERT_NEAR(prepared->surface.offset_m, 1e-3, 0.1e-3);
-  const JndLine jnd;
-  double sum = 0.0;
-  int count = 0;
-  for (const RecordingRow& row : prepared->recording.rows) {
-    if (!(row.position_m > 1e-3)) continue;
-    sum += std::erf(jnd.at(2000.0 * (row.position_m - 1e-3)) / (std::sqrt(2.0) * white_force_noise_N(*prepared)));
-    ++count;
-  }
-  EXPECT_NEAR(noise_floor({prepared.get()}, jnd).within_jnd, sum / count, 0.005);
-}
-
 }  // namespace
 }  // namespace palpate

@@ -5,7 +5,6 @@
 #include <Eigen/QR>
 #include <Eigen/SVD>
 #include <algorithm>
-#include <cmath>
 #include <vector>
 
 #include "models/model/kernels.h"
@@ -32,13 +31,6 @@ RbfFunction solved(const Sites& sites, const Eigen::MatrixXd& centres) {
   return solve_weights(sites, centres).function();
 }
 
-double worst_error(const RbfFunction& function, const Sites& sites) {
-  double worst = 0.0;
-  for (Eigen::Index i = 0; i < sites.count(); ++i)
-    worst = std::max(worst, std::abs(rbf_value(function, sites.points.col(i).data()) - sites.target_N[i]));
-  return worst;
-}
-
 TEST(SolveWeights, ReproducesAPolynomialOfTheTailExactly) {
   for (const KernelKind kernel : kKernelKinds) {
     Sites sites = smooth_sites(2, 200, 0.0, 1);
@@ -49,49 +41,6 @@ TEST(SolveWeights, ReproducesAPolynomialOfTheTailExactly) {
     EXPECT_LE((fitted.tail - tail).cwiseAbs().maxCoeff(), 1e-10) << kernel_name(kernel);
     EXPECT_LE(fitted.weights.cwiseAbs().maxCoeff(), 1e-10);
   }
-}
-
-// With as few sites as unknowns, signal and noise cannot be separated reliably.
-TEST(SolveWeights, FollowsAsManySitesAsUnknownsToWithinTheSmoothing) {
-  const Sites sites = smooth_sites(3, 40, 0.0, 2);
-  const RbfFunction fitted = solved(sites, sites.points);
-  EXPECT_LE(worst_error(fitted, sites), 0.1);
-}
-
-TEST(SolveWeights, CoincidingCentresShareTheirWeight) {
-  const Sites sites = smooth_sites(2, 300, 0.0, 2);
-  Eigen::MatrixXd centres(2, 16);
-  centres << sites.points.leftCols(8), sites.points.leftCols(8);
-  const RbfFunction fitted = solved(sites, centres);
-  const auto alone = solved(sites, sites.points.leftCols(8));
-  const auto& weights = fitted.weights;
-  EXPECT_LT(weights.cwiseAbs().maxCoeff(), 2.0 * alone.weights.cwiseAbs().maxCoeff());
-  EXPECT_LT((weights.head(8) - weights.tail(8)).cwiseAbs().maxCoeff(), 1e-6);
-  EXPECT_LT((weights.head(8) + weights.tail(8) - alone.weights).cwiseAbs().maxCoeff(), 1e-6);
-}
-
-TEST(SolveWeights, OneSiteGivesItsForce) {
-  const Sites sites = smooth_sites(4, 1, 0.0, 2);
-  const RbfFunction fitted = solved(sites, sites.points);
-  EXPECT_NEAR(rbf_value(fitted, sites.points.data()), sites.target_N[0], 1e-13);
-}
-
-TEST(SolveWeights, ZeroForcesGiveAZeroFunction) {
-  Sites sites = smooth_sites(4, 100, 0.0, 2);
-  sites.target_N.setZero();
-  const RbfFunction fitted = solved(sites, sites.points.leftCols(10));
-  EXPECT_EQ(fitted.weights.norm(), 0.0);
-  EXPECT_EQ(fitted.tail.norm(), 0.0);
-}
-
-TEST(SolveWeights, ASiteWithScaleZeroDoesNotCount) {
-  Sites sites = smooth_sites(2, 200, 0.0, 2);
-  const RbfFunction before = solved(sites, sites.points.leftCols(10));
-  sites.row_scale[150] = 0.0;
-  const RbfFunction without = solved(sites, sites.points.leftCols(10));
-  sites.target_N[150] = 1e6;
-  const RbfFunction wild = solved(sites, sites.points.leftCols(10));
-  EXPECT_EQ(without.weights, wild.weights);
 }
 
 TEST(ProjectedKernel, ProjectsTheTailOutAndIsFactorised) {
@@ -132,13 +81,6 @@ TEST(PenalisedWeights, WithEverySiteACentreItIsTheSmoothingSpline) {
       EXPECT_LT(test::largest_difference(some, all->function(), sites.points), 1e-7) << kernel_name(kernel);
     }
   }
-}
-
-TEST(PenalisedWeights, MuchSmoothingLeavesTheTail) {
-  Sites sites = smooth_sites(2, 200, 0.1, 7);
-  sites.smoothing = 1e14;
-  const auto fitted = solved(sites, sites.points.leftCols(30));
-  EXPECT_LT(fitted.weights.cwiseAbs().maxCoeff(), 1e-9);
 }
 
 // Eq. 8 and the rows of the side condition (eq. 3), literally.
@@ -194,40 +136,6 @@ TEST(TruncatedWeights, AreThoseOfThePapersPseudoInverse) {
   }
 }
 
-TEST(TruncatedWeights, CoincidingCentresShareTheirWeight) {
-  Sites sites = smooth_sites(2, 300, 0.0, 3);
-  sites.row_scale = sites.target_N.cwiseInverse();
-  sites.truncation = 1e-12;
-  Eigen::MatrixXd centres = sites.points.leftCols(40);
-  centres.col(39) = centres.col(0);
-  const RbfFunction fitted = solved(sites, centres);
-  const RbfFunction once = solved(sites, centres.leftCols(39));
-  EXPECT_NEAR(fitted.weights(0), fitted.weights(39), 1e-6 * fitted.weights.cwiseAbs().maxCoeff());
-  // The same least squares error as without the duplicate.
-  EXPECT_NEAR(worst_error(fitted, sites), worst_error(once, sites), 1e-6);
-}
-
-TEST(PenalisedWeights, TellRankAndConditionNumber) {
-  const Sites sites = smooth_sites(2, 300, 0.0, 2);
-  Eigen::MatrixXd centres(2, 16);
-  centres << sites.points.leftCols(8), sites.points.leftCols(8);
-  const FittedCorrection twice = solve_weights(sites, centres);
-  const FittedCorrection once = solve_weights(sites, centres.leftCols(8));
-  // Without a penalty eight weights with three side conditions, and a tail of three.
-  EXPECT_EQ(once.rank, 8 - 3 + 3);
-  EXPECT_EQ(twice.rank, once.rank);
-  EXPECT_GT(once.condition_number, 1.0);
-  EXPECT_LT(once.condition_number, 1e6) << "of columns of length 1";
-}
-
-TEST(DistinctSites, KeepsTheFirstOfEachPoint) {
-  Sites sites;
-  sites.points.resize(2, 5);
-  sites.points << 1, 0, 1, 0, 2,  //
-      3, 5, 3, 4, 0;
-  EXPECT_EQ(distinct_sites(sites), (std::vector<Eigen::Index>{0, 1, 3, 4}));
-}
-
 // (c . r)^2 / |c'|^2 from a QR factorisation of all columns chosen so far.
 double gain_from_scratch(const Sites& sites, const CandidateGains& gains, const std::vector<Eigen::Index>& chosen,
                          Eigen::Index site) {
@@ -277,34 +185,6 @@ TEST(CandidateGains, AreThoseOfAFreshLookHoweverLongAgoTheLastWas) {
   gains.update({&never_seen, 1}, basis);
   const double expected = gain_from_scratch(sites, gains, chosen, never_seen);
   EXPECT_NEAR(gains.gain(never_seen), expected, 1e-6 * expected);
-}
-
-// Close to a chosen centre a column is almost in the span of the basis. The difference
-// of squares then has no correct digits, but the orthogonalised column has.
-TEST(CandidateGains, KnowsAColumnAllButInsideTheBasis) {
-  Sites sites = test::smooth_sites(4, 300, 0.005, 5);
-  sites.points.col(1) = sites.points.col(0).array() + 1e-5;
-  sites.points.col(2) = sites.points.col(0);
-  CandidateGains gains(sites);
-  OrthogonalBasis basis(sites, 1);
-  const Eigen::Index chosen = 0;
-  basis.add(gains.columns({&chosen, 1}));
-  const std::vector<Eigen::Index> looked_at{1, 2};
-  gains.update(looked_at, basis);
-  const double expected = gain_from_scratch(sites, gains, {0}, 1);
-  EXPECT_NEAR(gains.gain(1), expected, 0.01 * expected);
-  EXPECT_EQ(gains.gain(2), 0.0) << "a repeated point adds nothing";
-}
-
-// Columns that differ by 1e-7 of their length: one pass of Gram-Schmidt leaves 1e-9 of each in the others.
-TEST(OrthogonalBasis, IsOrthogonalForColumnsThatAreAlmostTheSame) {
-  const Sites sites = test::smooth_sites(2, 200, 0.0, 3);
-  const Eigen::MatrixXd random = test::random_points(200, 11, 7);
-  OrthogonalBasis basis(sites, 10);
-  for (Eigen::Index k = 1; k <= 10; ++k) EXPECT_TRUE(basis.add(random.col(0) + 1e-7 * random.col(k)));
-  const Eigen::MatrixXd q = basis.data_and_columns().rightCols(basis.size());
-  const Eigen::MatrixXd error = q.transpose() * q - Eigen::MatrixXd::Identity(q.cols(), q.cols());
-  EXPECT_LT(error.cwiseAbs().maxCoeff(), 1e-13);
 }
 
 }  // namespace

@@ -4,12 +4,10 @@
 
 #include <Eigen/LU>
 #include <algorithm>
-#include <cmath>
 
 #include "models/correction/methods.h"
 #include "models/model/correction.h"
 #include "tests/support/message_parts.h"
-#include "tests/support/plain_rbf.h"
 #include "tests/support/random_points.h"
 
 namespace palpate {
@@ -18,91 +16,10 @@ namespace {
 using test::random_points;
 using test::smooth_sites;
 
-double rms_error(const RbfFunction& function, const Sites& truth) {
-  Eigen::VectorXd values;
-  RbfCorrection(function).evaluate_many(truth.points, values);
-  return std::sqrt((values - truth.target_N).squaredNorm() / static_cast<double>(truth.count()));
-}
-
 Result<RbfFunction> function_of(const Sites& sites) {
   auto solved = solve_direct(sites);
   if (!solved) return solved.error();
   return solved->function();
-}
-
-Result<RbfFunction> smoothed_fit(Sites sites, KernelKind kernel, double smoothing) {
-  sites.kernel = kernel;
-  sites.smoothing = smoothing;
-  return function_of(sites);
-}
-
-// The system of eq. 4 with the smoothing on its diagonal, by dense LU with
-// full pivoting.
-RbfFunction saddle_solution(const Sites& sites, KernelKind kernel, double smoothing) {
-  const Eigen::Index n = sites.count();
-  const Eigen::MatrixXd tail = tail_matrix(tail_degree(kernel), sites.points);
-  Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(n + tail.cols(), n + tail.cols());
-  for (Eigen::Index i = 0; i < n; ++i)
-    for (Eigen::Index j = 0; j < n; ++j)
-      matrix(i, j) = kernel_value(kernel, (sites.points.col(i) - sites.points.col(j)).norm());
-  matrix.topLeftCorner(n, n).diagonal() +=
-      definiteness_sign(kernel) * smoothing * sites.row_scale.cwiseAbs2().cwiseInverse();
-  matrix.topRightCorner(n, tail.cols()) = tail;
-  matrix.bottomLeftCorner(tail.cols(), n) = tail.transpose();
-  Eigen::VectorXd right = Eigen::VectorXd::Zero(n + tail.cols());
-  right.head(n) = sites.target_N;
-  const Eigen::VectorXd solution = matrix.fullPivLu().solve(right);
-  return {kernel, sites.points, solution.head(n), solution.tail(tail.cols())};
-}
-
-// The condition number is up to 1e7 here, so nine digits are correct; the test requires eight.
-TEST(FitDirect, SolvesTheSaddleSystemOfEquation4) {
-  const Sites sites = smooth_sites(3, 120, 0.01, 1);
-  for (const KernelKind kernel : kKernelKinds)
-    for (const double smoothing : {1e-3, 1e-1, 10.0}) {
-      const auto fitted = smoothed_fit(sites, kernel, smoothing);
-      ASSERT_TRUE(fitted.ok());
-      const RbfFunction expected = saddle_solution(sites, kernel, smoothing);
-      const double size = expected.weights.cwiseAbs().maxCoeff();
-      EXPECT_LE((fitted->weights - expected.weights).cwiseAbs().maxCoeff(), 1e-8 * size)
-          << kernel_name(kernel) << smoothing;
-      EXPECT_LE((fitted->tail - expected.tail).cwiseAbs().maxCoeff(), 1e-8 * (1 + size));
-    }
-}
-
-TEST(FitDirect, InterpolatesWithoutSmoothing) {
-  const Sites sites = smooth_sites(4, 300, 0.0, 1);
-  for (const KernelKind kernel : kKernelKinds) {
-    const auto fitted = smoothed_fit(sites, kernel, 0.0);
-    ASSERT_TRUE(fitted.ok());
-    // The minimum smoothing is 1e-15 of the trace; its bias is below 1e-7 here.
-    EXPECT_LE(rms_error(*fitted, sites), 1e-7) << kernel_name(kernel);
-    const Eigen::MatrixXd tail = tail_matrix(tail_degree(kernel), sites.points);
-    const double size = fitted->weights.cwiseAbs().sum();
-    EXPECT_LE((tail.transpose() * fitted->weights).cwiseAbs().maxCoeff(), 1e-12 * size) << "eq. 3";
-  }
-}
-
-// The stability tests have more cases, with the cubic kernel.
-TEST(FitDirect, DegenerateDataHaveADefinedOutcome) {
-  std::vector<Sites> all = test::degenerate_sites();
-  for (const int count : {1, 2, 5, 6}) all.push_back(smooth_sites(4, count, 0.0, 1));
-  for (const KernelKind kernel : kKernelKinds) {
-    for (Sites sites : all) {
-      sites.kernel = kernel;
-      const auto fitted = function_of(sites);
-      ASSERT_TRUE(fitted.ok());
-      EXPECT_TRUE(fitted->weights.allFinite());
-      // At the sites the force is at most twice the largest target.
-      const double range = sites.target_N.cwiseAbs().maxCoeff();
-      Eigen::VectorXd values;
-      RbfCorrection(*fitted).evaluate_many(sites.points, values);
-      EXPECT_LE(values.cwiseAbs().maxCoeff(), 2.0 * range + 1e-9) << kernel_name(kernel);
-    }
-    Sites one = smooth_sites(4, 1, 0.0, 1);
-    one.kernel = kernel;
-    EXPECT_NEAR(rbf_value(*function_of(one), one.points.data()), one.target_N[0], 1e-12);
-  }
 }
 
 TEST(FitDirect, SameDataSameBits) {
@@ -128,30 +45,6 @@ TEST(FitDirect, RefusesTooManySitesAndCanBeInterrupted) {
     const auto stopped = solve_direct(sites, {[&](double f) { return f < fraction; }});
     ASSERT_FALSE(stopped.ok());
     EXPECT_EQ(stopped.error().message, "interrupted") << fraction;
-  }
-}
-
-// The condition number in the 1-norm of the factorised matrix, from its inverse.
-TEST(FitDirect, TellsRankAndConditionNumber) {
-  for (const KernelKind kind : kKernelKinds) {
-    Sites sites = smooth_sites(3, 80, 0.0, 3);
-    sites.kernel = kind;
-    sites.smoothing = 1e-3;
-    const ProjectedKernel projected(kind, sites.points, sites.row_scale);
-    Eigen::MatrixXd matrix = projected.matrix(projected.mean_eigenvalue(), sites.smoothing);
-    matrix.triangularView<Eigen::StrictlyUpper>() = matrix.transpose();
-    const auto norm = [](const Eigen::MatrixXd& a) { return a.cwiseAbs().colwise().sum().maxCoeff(); };
-    const double expected = norm(matrix) * norm(matrix.inverse());
-    const auto solved = solve_direct(sites);
-    ASSERT_TRUE(solved.ok());
-    EXPECT_EQ(solved->rank, 80);
-    // The estimate is a lower bound, rarely below a third (Higham 1988).
-    EXPECT_LE(solved->condition_number, expected * (1.0 + 1e-6)) << kernel_name(kind);
-    EXPECT_GE(solved->condition_number, expected / 3.0) << kernel_name(kind);
-    const auto fitted = fit_correction(kDirectMethod, {sites, sites.target_N});
-    ASSERT_TRUE(fitted.ok());
-    EXPECT_EQ(fitted->rank, solved->rank);
-    EXPECT_EQ(fitted->condition_number, solved->condition_number);
   }
 }
 

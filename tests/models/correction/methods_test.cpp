@@ -16,10 +16,6 @@ namespace {
 
 using test::smooth_sites;
 
-TEST(Methods, ABaseTakesItsTimeToo) {
-  EXPECT_EQ(expected_seconds(kVoxelMethod), kVoxelMethod.expected_seconds + kDirectMethod.expected_seconds);
-}
-
 // A base that is given is not fitted again: of another one the result differs.
 TEST(Methods, StartFromTheBaseThatTheyAreGiven) {
   const Sites sites = smooth_sites(2, 60, 0.0, 1);
@@ -34,23 +30,6 @@ TEST(Methods, StartFromTheBaseThatTheyAreGiven) {
   EXPECT_EQ(grid_of(from_direct->correction)->values_N, grid_of(alone->correction)->values_N);
   task.base = fit_correction(kRandomMethod, task)->correction;
   EXPECT_NE(grid_of(fit_correction(kVoxelMethod, task)->correction)->values_N, grid_of(alone->correction)->values_N);
-}
-
-// Half way between even steps and the quantiles of the sites, which are cubes of even numbers.
-TEST(Methods, TheGridHasItsNodesWhereTheSitesAre) {
-  Sites sites = smooth_sites(1, 201, 0.0, 1);
-  for (Eigen::Index i = 0; i < 201; ++i) sites.points(0, i) = std::pow(static_cast<double>(i) / 200.0, 3);
-  const Eigen::VectorXd jnd_N = Eigen::VectorXd::Ones(201);
-  MethodTask task{sites, jnd_N};
-  task.grid = {5};
-  const auto fitted = fit_correction(kVoxelMethod, task);
-  ASSERT_TRUE(fitted.ok());
-  const std::vector<double>& nodes = grid_of(fitted->correction)->nodes[0];
-  ASSERT_EQ(nodes.size(), 5u);
-  for (std::size_t k = 0; k < 5; ++k) {
-    const double share = static_cast<double>(k) / 4.0;
-    EXPECT_NEAR(nodes[k], 0.5 * (share + std::pow(share, 3)), 1e-12) << k;
-  }
 }
 
 // Calls `test` with each method that selects centres; greedy ones with subsets of candidates and with all.
@@ -129,17 +108,6 @@ TEST(FitRandom, CentresAreDistinctSitesThatDependOnTheSeed) {
     for (int k = 0; k < j; ++k) EXPECT_GT((centres.col(j) - centres.col(k)).norm(), 0.0);
   }
   EXPECT_NE(centres, test::fit_random(sites, {.centres = 30, .seed = 6})->centres);
-}
-
-TEST(FitRandom, IdenticalSitesGiveTheirWeightedMean) {
-  Sites sites = smooth_sites(2, 4, 0.0, 1);
-  sites.points.colwise() = sites.points.col(0).eval();
-  sites.target_N << 1, 2, 3, 6;
-  sites.row_scale.setOnes();
-  const auto fitted = test::fit_random(sites, {});
-  ASSERT_TRUE(fitted.ok());
-  // The ridge may reduce the force by a relative 1e-5 with four sites.
-  EXPECT_NEAR(rbf_value(*fitted, sites.points.data()), 3.0, 1e-4);
 }
 
 }  // namespace

@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
 
 #include "tests/support/example_model.h"
@@ -84,17 +83,6 @@ TEST(Thinning, ASiteIsTheMeanOfItsCube) {
   EXPECT_GE(large, 8);  // a rest position may be on the boundary of a cube
 }
 
-TEST(Thinning, SamplesWithoutForceShareNoSite) {
-  Samples samples = samples_of(recording_of(2000, [](int i) {
-    return std::pair{2e-3, i % 2 == 0 ? 0.0 : 1.0};  // the same place, with and without
-  }));
-  samples.force_noise_N = 1e-3;  // identified as noise, the difference would be larger than the force
-  const Thinned thinned = thinned_by(Thinning::coverage, samples, test::position_features());
-  ASSERT_EQ(thinned.sites.samples.sum(), 2000.0);
-  for (Eigen::Index i = 0; i < thinned.sites.count(); ++i)
-    EXPECT_TRUE(thinned.force_N(i) == 0.0 || thinned.force_N(i) == 1.0) << thinned.force_N(i);
-}
-
 // Twenty presses of one path, of which every fifth has other forces.
 TEST(Thinning, ASiteHasSamplesOfOneFoldOnly) {
   const Samples samples = samples_of(recording_of(10000, [](int i) {
@@ -124,33 +112,6 @@ TEST(Thinning, ForceReductionKeepsThePapersSamples) {
   EXPECT_EQ(thinned.step_N, 0.05);
 }
 
-TEST(Thinning, ForceReductionBeginsAnewWithEachRecording) {
-  const auto constant = [](int rows) { return recording_of(rows, [](int) { return std::pair{2e-3, 1.0}; }); };
-  const Samples samples =
-      test::must(make_samples({prepare_recording(constant(50)), prepare_recording(constant(60))}, JndLine{}));
-  EXPECT_EQ(thinned_by(Thinning::force, samples, test::position_features()).sites.count(), 2);
-}
-
-TEST(Thinning, ForceReductionOfNoiseStaysBelowItsCap) {
-  test::Numbers noise(2);
-  const Samples samples = samples_of(recording_of(60000, [&](int) {
-    return std::pair{3e-3, 5.0 + 2.0 * noise.next()};
-  }));
-  const Thinned thinned = thinned_by(Thinning::force, samples, test::position_features());
-  EXPECT_LE(static_cast<std::size_t>(thinned.sites.count()), kMaximumSites);
-  EXPECT_GT(thinned.step_N, 0.05);
-}
-
-TEST(Thinning, NoneKeepsEverySampleInContact) {
-  const Recording recording = test::example_recording(5000, 1000.0);
-  const Thinned thinned = thinned_by(Thinning::none, samples_of(recording), test::paper_features());
-  std::vector<double> expected_N;
-  for (const RecordingRow& row : recording.rows) {
-    if (row.position_m > 0.0) expected_N.push_back(row.force_N);
-  }
-  EXPECT_EQ(std::vector<double>(thinned.sites.force_N.begin(), thinned.sites.force_N.end()), expected_N);
-}
-
 // u = (x - mean) / sqrt(range 4 sigma).
 TEST(Normalisation, IsByRangeAndDeviation) {
   const Samples samples = samples_of(test::example_recording(5000, 1000.0));
@@ -171,22 +132,6 @@ TEST(Normalisation, IsByRangeAndDeviation) {
     EXPECT_NEAR(normalisation.scale_of(0.5)(k), scale, 1e-9 * scale);
     EXPECT_NEAR(normalisation.scale_of(1.0)(k), high - low, 1e-9 * scale);
   }
-}
-
-TEST(Normalisation, AConstantFeatureHasTheScaleOne) {
-  Eigen::MatrixXd features(2, 100);
-  features.row(0).setConstant(2e-3);
-  features.row(1) = Eigen::RowVectorXd::LinSpaced(100, 0.0, 1.0);
-  const Normalisation normalisation = normalisation_of(features);
-  EXPECT_NEAR(normalisation.offset(0), 2e-3, 1e-15);
-  for (const double exponent : {0.0, 0.5, 1.0}) EXPECT_EQ(normalisation.scale_of(exponent)(0), 1.0) << exponent;
-}
-
-// A spread of rounding, which no exponent makes a scale of.
-TEST(Normalisation, ASpreadOfRoundingIsNone) {
-  Eigen::MatrixXd features = Eigen::MatrixXd::Constant(1, 100, 2e-3);
-  features(0, 50) = std::nextafter(2e-3, 1.0);
-  for (const double exponent : {0.0, 0.5, 1.0}) EXPECT_EQ(normalisation_of(features).scale_of(exponent)(0), 1.0);
 }
 
 }  // namespace

@@ -135,26 +135,6 @@ TEST(ExportC, InSinglePrecisionNobodyFeelsTheDifference) {
   }
 }
 
-// A board that has run for a day, with a clock in whole microseconds.
-TEST(ExportC, SinglePrecisionTakesNoTimeThatCouldBecomeCoarse) {
-  const Recording& recording = recordings().front();
-  const ModelData data = test::example_models().front();
-  const CompiledModel<float> fresh(data, positions_of(recording)), old(data, positions_of(recording));
-  ASSERT_TRUE(fresh.loaded() && old.loaded());
-  EXPECT_EQ(fresh.force_at, nullptr);
-  std::uint32_t last_us = 0, old_us = 4'000'000'000;  // wraps
-  const std::uint32_t since_us = old_us;
-  for (const RecordingRow& row : recording.rows) {
-    const auto now_us = static_cast<std::uint32_t>(std::lround(1e6 * row.time_s));
-    const auto position_m = static_cast<float>(row.position_m);
-    const auto step_s = [](std::uint32_t to_us, std::uint32_t from_us) {
-      return 1e-6F * static_cast<float>(to_us - from_us);
-    };
-    ASSERT_EQ(fresh.force_after(step_s(now_us, std::exchange(last_us, now_us)), position_m),
-              old.force_after(step_s(now_us + since_us, std::exchange(old_us, now_us + since_us)), position_m));
-  }
-}
-
 // Bad samples in a row, within and beyond the reach of a hand.
 TEST(ExportC, GivesTheLibrarysForcesDuringAndAfterBadSamples) {
   const Recording& recording = recordings().front();
@@ -169,19 +149,6 @@ TEST(ExportC, GivesTheLibrarysForcesDuringAndAfterBadSamples) {
       ASSERT_NEAR(compiled.force(sample.time_s, sample.position_m), tick.step(sample).force_N[0], 1e-9)
           << data.name << " " << i;
     }
-  }
-}
-
-TEST(ExportC, StepsGiveTheSameAsTimes) {
-  const Recording& recording = recordings().front();
-  const ModelData data = test::example_models().front();
-  const CompiledModel<double> by_time(data, positions_of(recording));
-  const CompiledModel<double> by_step(data, positions_of(recording));
-  double before_s = recording.rows.front().time_s;
-  for (const RecordingRow& row : recording.rows) {
-    const double expected_N = by_time.force(row.time_s, row.position_m);
-    EXPECT_NEAR(by_step.force_after(row.time_s - before_s, row.position_m), expected_N, 1e-9);
-    before_s = row.time_s;
   }
 }
 

@@ -5,7 +5,6 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "tests/support/random_points.h"
 
@@ -72,18 +71,6 @@ TEST(FitBound, IsTheSameForPullingForces) {
   for (const double force_N : {0.0, 1.0, 5.0}) EXPECT_EQ(of_pulling->at(-force_N, 0.0), of_pushing->at(force_N, 0.0));
 }
 
-TEST(FitBound, OneUnitDoesNotShowHowTheNextOneDiffers) {
-  EXPECT_FALSE(bound_of({}).has_value());
-  EXPECT_FALSE(bound_of(of_units(1)).has_value());
-  EXPECT_TRUE(bound_of(of_units(2)).has_value());
-}
-
-// The largest of few units; of 19 the 18th, ceil(0.9 x 20).
-TEST(FitBound, IsAQuantileOverUnits) {
-  for (const auto& [units, rank] : {std::pair{2, 2}, {5, 5}, {9, 9}, {19, 18}, {40, 37}})
-    EXPECT_NEAR(bound_of(of_units(units))->at(1.0, 0.0), 0.1 * rank, 0.011) << units << " units";
-}
-
 // One row of 50, too few for the 95 % quantile of all, has an error of 1 N: in no phase, or first, or deep, or fast.
 TEST(FitBound, HoldsInEveryPhase) {
   struct Phase {
@@ -93,28 +80,10 @@ TEST(FitBound, HoldsInEveryPhase) {
   for (const Phase& phase : {Phase{25, 0.0, 0.0, 0.1}, {0, 0.0, 0.0, 1.0}, {25, 1e-3, 0.0, 1.0}, {25, 0.0, 0.1, 1.0}}) {
     std::vector<Prediction> predictions = of_units(2);
     for (Prediction& one : predictions) one.error_N = 0.1;
-    for (const std::size_t unit : {0, 1})
+    for (std::size_t unit = 0; unit < 2; ++unit)
       predictions[50 * unit + phase.row] = {1.0, 1.0, 0.0, static_cast<int>(unit), phase.depth_m, phase.speed_m_per_s};
     EXPECT_NEAR(bound_of(predictions)->at(1.0, 0.0), phase.bound_N, 0.011) << phase.depth_m << phase.speed_m_per_s;
   }
-}
-
-// Mean errors that are no line over the force: 20, 200 and 110 mN at 0, 2.5 and 5 N. Least squares with rows over the
-// JND follow the small force.
-TEST(FitBound, ErrorsCountInJnd) {
-  const JndLine jnd;
-  std::vector<Prediction> predictions;
-  Eigen::Matrix2d gram = Eigen::Matrix2d::Zero();
-  Eigen::Vector2d right = Eigen::Vector2d::Zero();
-  for (const auto& [force_N, error_N] : {std::pair{0.0, 0.02}, {2.5, 0.2}, {5.0, 0.11}}) {
-    for (int i = 0; i < 50; ++i) predictions.push_back({error_N, force_N, 0.0, i % 2});
-    const Eigen::Vector2d row = Eigen::Vector2d(1.0, force_N) / jnd.at(force_N);
-    gram += row * row.transpose();
-    right += row * error_N / jnd.at(force_N);
-  }
-  const Eigen::Vector2d shape = gram.inverse() * right;
-  const auto bound = bound_of(predictions);
-  EXPECT_NEAR(bound->floor_N / bound->per_force, shape(0) / shape(1), 1e-6);
 }
 
 // Errors of 3 N for each unit of distance beyond the inner radius, 0.1; a recording that as recorded reads 0.2 N more,

@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 
 #include "models/correction/methods.h"
 #include "models/model/correction.h"
@@ -129,23 +128,6 @@ TEST(Fit, EveryMethodFitsEveryRecording) {
   }
 }
 
-TEST(Fit, TwentyKilohertz) {
-  Asked asked = asked_for(test::paper_features());
-  asked.plan.thinning = Thinning::force;  // 50 mN steps: few sites, so that the direct fit is quick
-  expect_all_methods({test::example_recording(40000, 20000.0)}, asked, 0.5);
-}
-
-TEST(Fit, JitteredTime) {
-  Recording recording = test::example_recording(1500, 250.0);
-  const Recording fine = test::example_recording(15000, 2500.0);
-  test::Numbers numbers(3);
-  for (std::size_t i = 1; i < recording.rows.size(); ++i) {
-    const double shift = 4.0 * numbers.next();  // in rows of `fine`, 10 for each row
-    recording.rows[i] = fine.rows[10 * i + static_cast<std::size_t>(5.0 + shift) - 5];
-  }
-  expect_all_methods({recording}, asked_for(test::paper_features()), 0.9);
-}
-
 TEST(Fit, SeveralRecordingsAndOneTwice) {
   const Recording a = test::example_recording(1000, 250.0);
   const Recording b = test::example_recording(600, 500.0);
@@ -154,21 +136,6 @@ TEST(Fit, SeveralRecordingsAndOneTwice) {
   EXPECT_EQ(prepared->common.provenance.samples, 2600u);
   EXPECT_EQ(prepared->common.provenance.recordings.size(), 3u);
   expect_all_methods({a, b, a}, asked_for(test::paper_features()), 0.8);
-}
-
-TEST(Fit, MoreCentresThanSites) {
-  const auto prepared = prepare({test::example_recording(60, 1000.0), test::example_recording(900, 1000.0)},
-                                asked_for(test::position_features()));
-  ASSERT_TRUE(prepared.ok());
-  for (ModelPlan plan : plans_like(asked_for(test::position_features()).plan)) {
-    plan.centres = 100000;
-    const auto fit = fit_method(*prepared, plan);
-    ASSERT_TRUE(fit.ok()) << plan_name(plan) << ": " << fit.error().message;
-    expect_safe(fit->data);
-    if (const RbfFunction* rbf = rbf_of(fit->data.correction)) {
-      EXPECT_LE(rbf->centre_count(), prepared->sites.count()) << plan_name(plan);
-    }
-  }
 }
 
 TEST(Fit, EveryKernelAndThinning) {
@@ -236,24 +203,6 @@ TEST(Fit, StopsWhereverItIsAsked) {
       const auto stopped = fit_method(*prepared, asked.plan, {[&](double) { return ++count < stop; }});
       EXPECT_EQ(test::message_of(stopped), "interrupted") << stop;
     }
-  }
-}
-
-TEST(Fit, AVoxelGridFromADirectFitIsTheSame) {
-  for (const Base base : {Base::trend, Base::force}) {
-    ModelPlan plan = asked_for({}, base).plan;
-    const auto prepared = prepare({test::example_recording(1500, 500.0)}, asked_for(test::paper_features(), base));
-    ASSERT_TRUE(prepared.ok()) << prepared.error().message;
-    plan.method = &kDirectMethod;
-    const auto direct = fit_method(*prepared, plan);
-    ASSERT_TRUE(direct.ok()) << direct.error().message;
-    plan.method = &kVoxelMethod;
-    plan.grid.assign(4, 5);
-    const auto alone = fit_method(*prepared, plan);
-    const auto shared = fit_method(*prepared, plan, {}, &*direct, direct->choices ? &*direct->choices : nullptr);
-    ASSERT_TRUE(alone.ok() && shared.ok());
-    EXPECT_EQ(grid_of(shared->data.correction)->nodes, grid_of(alone->data.correction)->nodes);
-    EXPECT_EQ(grid_of(shared->data.correction)->values_N, grid_of(alone->data.correction)->values_N);
   }
 }
 

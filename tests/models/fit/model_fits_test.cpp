@@ -65,52 +65,5 @@ TEST(ModelFits, AFitIsThatOfAPlanAlone) {
   }
 }
 
-TEST(ModelFits, ABaseIsFittedOnce) {
-  ModelPlan voxel = plan_for(Base::force, kVoxelMethod);
-  voxel.grid.assign(4, 5);
-  const ModelPlan direct = plan_for(Base::force, kDirectMethod);
-  ModelFits alone = example_fits();
-  ModelFits after = example_fits();
-  must(alone.prepare(voxel, {}));
-  must(after.prepare(voxel, {}));
-  const double direct_s = must(after.fit(direct, {})).seconds;
-  EXPECT_LT(counted(after, voxel).second, counted(alone, voxel).second);
-  EXPECT_GE(must(after.fit(voxel, {})).seconds, direct_s) << "with the time of its base";
-}
-
-// What the paper leaves open is selected once for a number of centres, with one question for each of six settings.
-TEST(ModelFits, ChoicesAreThoseOfTheFirstFitWithAsManyCentres) {
-  ModelFits fits = example_fits();
-  must(fits.prepare(plan_for(Base::force, kRandomMethod), {}));
-  const int first = counted(fits, plan_for(Base::force, kRandomMethod)).second;
-  EXPECT_EQ(counted(fits, plan_for(Base::force, kRandomMethod)).second, first - 6);
-  EXPECT_EQ(counted(fits, plan_for(Base::force, kRandomMethod, 20)).second, first);
-  const auto random = must(fits.fit(plan_for(Base::force, kRandomMethod), {}));
-  const auto kdtree = must(fits.fit(plan_for(Base::force, kKdTreeMethod), {}));
-  ASSERT_TRUE(random.choices && kdtree.choices);
-  EXPECT_EQ(choices_text(*kdtree.choices), choices_text(*random.choices));
-  // Another kernel has other choices.
-  ModelPlan linear = plan_for(Base::force, kRandomMethod);
-  linear.kernel = KernelKind::linear;
-  EXPECT_EQ(must(fits.fit(linear, {})).choices->kernel, KernelKind::linear);
-  // The direct interpolation has a smoothing.
-  const auto direct = must(fits.fit(plan_for(Base::force, kDirectMethod), {}));
-  EXPECT_EQ(direct.choices->truncation, 0.0);
-  EXPECT_GT(direct.choices->smoothing, 0.0);
-}
-
-TEST(ModelFits, SayWhatIsWrong) {
-  Recording air = test::example_recording(200, 1000.0);
-  for (RecordingRow& row : air.rows) row.position_m = -1e-3;
-  ModelFits nothing({prepare_recording(air)}, {"test", test::paper_features(), {}});
-  const ModelPlan plan = plan_for(Base::trend, kGreedyMethod);
-  EXPECT_TRUE(test::has_parts(nothing.samples({}), {"in contact"}));
-  EXPECT_TRUE(test::has_parts(nothing.prepare(plan, {}), {"in contact"}));
-  EXPECT_TRUE(test::has_parts(nothing.fit(plan, {}), {"in contact"}));
-  ModelFits fits = example_fits();
-  EXPECT_EQ(test::message_of(fits.fit(plan, {[](double) { return false; }})), "interrupted");
-  EXPECT_TRUE(fits.fit(plan, {}).ok()) << "a fit that was interrupted leaves nothing behind";
-}
-
 }  // namespace
 }  // namespace palpate

@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <set>
-
 #include "engine/base/text.h"
 #include "models/correction/methods.h"
 #include "tests/support/message_parts.h"
@@ -57,17 +55,6 @@ TEST(ModelPlan, NamesWhatItDoesNotKnow) {
               "found \"" + std::string(name) + "\", expected a number of centres of 1 to 2000");
 }
 
-// The trend and the default, which corrects it, have one colour, every other method its own.
-TEST(ModelPlan, HasTheColourOfItsMethod) {
-  std::set<std::uint32_t> colours;
-  for (const ModelPlan& plan : all_plans()) {
-    if (plan.base == Base::trend && plan.method != &kTrendMethod) continue;
-    EXPECT_TRUE(colours.insert(colour_of(plan)).second) << plan_name(plan);
-  }
-  EXPECT_EQ(colour_of({}), colour_of(must(parse_plan("trend"))));
-  EXPECT_EQ(colour_of(must(parse_plan("trend+random-7"))), colour_of(must(parse_plan("random"))));
-}
-
 TEST(ModelPlan, DefaultsFollowTheBase) {
   const ModelPlan trend = must(parse_plan("trend"));
   const ModelPlan force = must(parse_plan("greedy"));
@@ -76,19 +63,6 @@ TEST(ModelPlan, DefaultsFollowTheBase) {
   ModelPlan given = force;
   given.thinning = Thinning::none;
   EXPECT_EQ(given.thins(), Thinning::none);
-}
-
-TEST(ModelPlan, SharesItsPreparationWithPlansOfOtherMethods) {
-  const auto same = [](const char* one, const char* other) {
-    return same_preparation(must(parse_plan_options(one)), must(parse_plan_options(other)));
-  };
-  EXPECT_TRUE(same("method=trend", "method=trend+voxel grid=5x5"));
-  EXPECT_TRUE(same("method=random centres=7", "method=greedy candidates=all"));
-  EXPECT_TRUE(same("method=greedy", "method=greedy kernel=linear"));
-  EXPECT_FALSE(same("method=greedy", "method=trend+greedy"));
-  EXPECT_FALSE(same("", "kernel=linear"));
-  EXPECT_FALSE(same("", "features=scene"));
-  EXPECT_FALSE(same("features=depth", "features=depth,velocity"));
 }
 
 TEST(PlanOptions, AreReadInAnyOrder) {
@@ -107,18 +81,6 @@ TEST(PlanOptions, AreReadInAnyOrder) {
   EXPECT_EQ(must(parse_plan_options("")), ModelPlan{});
   EXPECT_EQ(must(parse_plan_options("kernel=auto features=auto")), ModelPlan{});
   EXPECT_EQ(must(parse_plan_options("seed=18446744073709551615")).seed, 18446744073709551615u);
-}
-
-// The defaults that --help shows are those of a plan.
-TEST(PlanOptions, HaveTheDefaultsThatTheyName) {
-  for (const PlanOption& option : plan_options()) {
-    EXPECT_NE(option.help, "") << option.name;
-    const std::string text = option.default_text;
-    if (text.empty()) continue;
-    ModelPlan plan;
-    ASSERT_TRUE(option.set(plan, text)) << option.name;
-    EXPECT_EQ(plan, ModelPlan{}) << option.name;
-  }
 }
 
 TEST(PlanOptions, NameEachWrongOne) {
@@ -181,25 +143,6 @@ TEST(PlanOptions, RefuseWhatTheMethodDoesNotTake) {
        "trend+greedy; leave it out"},
   };
   for (const auto& [text, message] : wrong) EXPECT_EQ(message_of(parse_plan_options(text)), message);
-}
-
-TEST(PlanOptions, CheckOneByItself) {
-  EXPECT_EQ(option_error("centres", "40"), "");
-  EXPECT_EQ(option_error("grid", "5x5"), "") << "whatever the method";
-  EXPECT_EQ(option_error("centres", "many"), "found \"many\", expected 1 to 2000; direct uses every site");
-}
-
-TEST(FeatureListText, ReadsItsOwnExample) {
-  const FeatureList list = must(parse_feature_list(kFeatureListExample));
-  std::vector<FeatureKind> kinds;
-  for (const FeatureSpec& spec : list.features) kinds.push_back(spec.kind);
-  EXPECT_EQ(kinds, (std::vector{FeatureKind::depth, FeatureKind::velocity, FeatureKind::maxwell_spectrum,
-                                FeatureKind::maxwell_spectrum, FeatureKind::stops, FeatureKind::creep}));
-  EXPECT_EQ(constants_of(list.features[2]), std::vector{0.17});
-  EXPECT_EQ(constants_of(list.features[3]), (std::vector{0.4, 1.27}));
-  ASSERT_EQ(list.features[4].part_count, 1U);
-  EXPECT_DOUBLE_EQ(list.features[4].parts[0].threshold_m, 1e-4);
-  EXPECT_EQ(constants_of(list.features[5]), (std::vector{0.1, 1.0}));
 }
 
 TEST(FeatureListText, SaysWhatIsWrong) {

@@ -64,74 +64,12 @@ OpenChoices select(const Repeated& from, int centres, std::optional<KernelKind> 
                                         centres, kernel, {}));
 }
 
-// The RMS error of the true force between the places, of a fit to all sites with 300 centres.
-double error_N(const Repeated& from, const OpenChoices& choices, double truncation) {
-  Sites sites = from.sites;
-  const Eigen::VectorXd factor =
-      from.normalisation.scale.cwiseQuotient(from.normalisation.scale_of(choices.range_exponent));
-  sites.points = factor.asDiagonal() * sites.points;
-  sites.kernel = choices.kernel;
-  sites.truncation = truncation;
-  // Evenly over the repeats, so that some centres almost coincide.
-  std::vector<Eigen::Index> centres;
-  for (Eigen::Index i = 0; i < kRows; i += kRepeats) centres.push_back(i);
-  const RbfCorrection fitted(solve_weights(sites, sites.points(Eigen::all, centres)).function());
-  const Eigen::MatrixXd u = 0.9 * test::random_points(2, 500, 99);
-  const Eigen::Vector2d middle(3e-3, 0.0), size(2e-3, 0.05);
-  double squares = 0.0;
-  for (Eigen::Index i = 0; i < u.cols(); ++i) {
-    const Eigen::VectorXd x = (middle + size.cwiseProduct(u.col(i)) - from.normalisation.offset)
-                                  .cwiseQuotient(from.normalisation.scale_of(choices.range_exponent));
-    squares += std::pow(fitted.evaluate(x.data()) - true_force_N(u.col(i)), 2);
-  }
-  return std::sqrt(squares / static_cast<double>(u.cols()));
-}
-
-// The largest cut loses the shape of the force. Of the others, the differences are within the noise.
-TEST(OpenChoices, TheTruncationIsNotTheWorst) {
-  const Repeated from = repeated_places();
-  const OpenChoices choices = select(from, 300);
-  EXPECT_EQ(choices.smoothing, 0.0);
-  EXPECT_LT(error_N(from, choices, choices.truncation), 0.8 * error_N(from, choices, 1e-5));
-}
-
-TEST(OpenChoices, AKernelThatIsGivenIsKept) {
-  const Repeated from = repeated_places();
-  for (const KernelKind kernel : kKernelKinds) EXPECT_EQ(select(from, 50, kernel).kernel, kernel);
-}
-
 TEST(OpenChoices, TheBestOfAllKernelsIsSelected) {
   const Repeated from = repeated_places();
   const OpenChoices best = select(from, 50);
   double least = HUGE_VAL;
   for (const KernelKind kernel : kKernelKinds) least = std::min(least, select(from, 50, kernel).error_over_jnd);
   EXPECT_EQ(best.error_over_jnd, least);
-}
-
-// One sample in fifty is ten times as fast as the others, so that the range of the velocity compresses the slow motion.
-// That is right for a force of the depth alone, and wrong for one that varies with slow motion.
-TEST(OpenChoices, TheNormalisationIsThatOfTheFeatureThatDecides) {
-  for (const bool depth_decides : {true, false}) {
-    const Repeated from = repeated_places([&](Eigen::Vector2d& u, std::size_t i) {
-      if (i % 50 == 0) u(1) *= 10.0;
-      return 3.0 + std::sin(12.0 * (depth_decides ? u(0) : std::clamp(u(1), -1.0, 1.0)));
-    });
-    EXPECT_EQ(select(from, 100, KernelKind::cubic).range_exponent, depth_decides ? 1.0 : 0.5);
-  }
-}
-
-TEST(OpenChoices, TheDirectInterpolationIsSmoothed) {
-  const OpenChoices choices = select(repeated_places(), 0, KernelKind::cubic);
-  EXPECT_EQ(choices.truncation, 0.0);
-  EXPECT_GT(choices.smoothing, 0.0);
-}
-
-TEST(OpenChoices, SayWhatWasSelected) {
-  EXPECT_EQ(choices_text({KernelKind::cubic, 0.5, 1e-7, 0.0, 0.4321}),
-            "cubic kernel, each feature divided by the geometric mean of its range and deviation, truncation 1e-07: "
-            "cross-validated error 0.432 JND");
-  EXPECT_EQ(choices_text({KernelKind::thin_plate, 1.0, 0.0, 0.25, 1.0}),
-            "thin-plate kernel, each feature divided by its range, smoothing 0.25: cross-validated error 1.000 JND");
 }
 
 TEST(OpenChoices, CanBeInterruptedBeforeEachSetting) {

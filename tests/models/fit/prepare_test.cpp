@@ -42,33 +42,6 @@ TEST(PrepareOnTheForce, FitsTwoTimesToTheRecording) {
   EXPECT_EQ(provenance.relaxation, "auto");
 }
 
-// The target is the force, there is no trend, and the function counts everywhere.
-TEST(PrepareOnTheForce, TrustsItsFunctionEverywhere) {
-  RigSettings settings = test::train_settings("silicone");
-  settings.seconds = 8.0;
-  const PreparedTraining prepared =
-      test::prepare({test::rig_recording(settings)}, test::on_the_force(test::scene_request("silicone_block")));
-  EXPECT_EQ(prepared.thinning_force_N, 0.05);
-  EXPECT_EQ(prepared.sites.target_N, prepared.sites.force_N);
-  for (Eigen::Index i = 0; i < prepared.sites.count(); ++i)
-    EXPECT_EQ(prepared.sites.row_scale(i), 1.0 / std::max(std::abs(prepared.sites.force_N(i)), 0.05));
-  EXPECT_FALSE(prepared.correction.has_value());
-  EXPECT_FALSE(prepared.left_out.has_value());
-  EXPECT_TRUE(prepared.corrects());
-  const std::array<double, kMaxFeatures> x{5e-3, 0.1, 0.1, 0.1};
-  EXPECT_EQ(prepared.common.trend.at(x.data(), prepared.common.features), 0.0);
-  const Eigen::VectorXd far = Eigen::VectorXd::Constant(prepared.sites.dimension(), 50.0);
-  EXPECT_EQ(DomainGuard(prepared.common.cover).trust(far.data()), 1.0);
-}
-
-TEST(PrepareOnTheForce, OfPositionAloneHasNoTimes) {
-  test::FitRequest request = test::on_the_force(test::position_request());
-  request.plan.features = FeatureChoice::automatic;
-  RigSettings settings = test::train_settings("elastic");
-  settings.seconds = 8.0;
-  EXPECT_EQ(test::prepare({test::rig_recording(settings)}, request).common.features.size(), 1u);
-}
-
 // The paper's low-passes take the place of Maxwell branches.
 TEST(PrepareOnTheForce, AListGivesItsRelaxationTimes) {
   test::FitRequest request = test::on_the_force(test::default_request("silicone_block"));

@@ -45,82 +45,12 @@ TEST(SingularValues, RankAndConditionNumberCountWhatIsAboveTheCut) {
   EXPECT_EQ(found.condition_number(0.9), 1.0);
 }
 
-// With the last value cut the solution has no part along its direction, in which a full solution is enormous.
-TEST(SingularValues, SolveWithLeastNorm) {
-  const Eigen::MatrixXd a = with_known_values();
-  const SingularValues found = singular_values(a);
-  const Eigen::Vector3d dropped(-0.8, 0.0, 0.6);  // the third column of `right`
-  const Eigen::Vector3d x = Eigen::Vector3d(1.0, 2.0, 3.0);
-  const Eigen::VectorXd b = a * x;
-  // 1e-14 in b becomes 1e-5 along the direction of the value 1e-9.
-  EXPECT_LT((found.solve(b, 0.0) - x).norm(), 1e-4);
-  const Eigen::VectorXd cut = found.solve(b, 1e-6);
-  EXPECT_NEAR(cut.dot(dropped), 0.0, 1e-6);
-  EXPECT_LT((cut - (x - dropped * dropped.dot(x))).norm(), 1e-6);
-  EXPECT_LT((found.solve(b + Eigen::Vector4d::Constant(1e-4), 1e-6) - cut).norm(), 1e-4)
-      << "the inverse of the smallest value kept is 1/2";
-  EXPECT_GT((found.solve(b + Eigen::Vector4d::Constant(1e-4), 0.0) - x).norm(), 1e3);
-}
-
-TEST(SingularValues, OfZerosHaveNoRank) {
-  const SingularValues found = singular_values(Eigen::MatrixXd::Zero(4, 2));
-  EXPECT_EQ(found.rank(1e-6), 0);
-  EXPECT_EQ(found.condition_number(1e-6), 1.0);
-  EXPECT_EQ(found.solve(Eigen::VectorXd::Ones(4), 1e-6), Eigen::VectorXd::Zero(2));
-  EXPECT_EQ(singular_values(Eigen::MatrixXd(4, 0)).values.size(), 0);
-}
-
 TEST(SingularValues, ThatDidNotConvergeGiveNoNumbers) {
   SingularValues failed = singular_values(with_known_values());
   failed.values.setConstant(std::nan(""));
   const Eigen::VectorXd x = failed.solve(Eigen::VectorXd::Ones(4), 1e-6);
   ASSERT_EQ(x.size(), 3);
   EXPECT_TRUE(x.array().isNaN().all());
-}
-
-double condition_of(Eigen::MatrixXd a) {
-  const double norm = a.cwiseAbs().colwise().sum().maxCoeff();
-  EXPECT_TRUE(cholesky_in_place(a));
-  return cholesky_condition(a, norm);
-}
-
-// In the 1-norm. The estimate is exact for matrices this small.
-TEST(Cholesky, ConditionNumbersAreThoseOfTheClosedForms) {
-  EXPECT_NEAR(condition_of(Eigen::MatrixXd::Identity(5, 5)), 1.0, kRounding);
-  EXPECT_NEAR(condition_of(Eigen::Vector3d(4.0, 1.0, 0.5).asDiagonal()), 8.0, 8 * kRounding);
-  Eigen::Matrix2d pair;
-  pair << 2.0, 1.0, 1.0, 2.0;
-  EXPECT_NEAR(condition_of(pair), 3.0, 3 * kRounding);
-  // Hilbert matrices (Todd 1954); the error of the inverse is the condition number times that of the elements.
-  for (const auto& [n, expected] : {std::pair{3, 748.0}, {4, 28375.0}, {5, 943656.0}}) {
-    Eigen::MatrixXd hilbert(n, n);
-    for (int i = 0; i < n; ++i)
-      for (int j = 0; j < n; ++j) hilbert(i, j) = 1.0 / (i + j + 1);
-    EXPECT_NEAR(condition_of(hilbert), expected, expected * expected * 1e-15) << n;
-  }
-}
-
-TEST(Cholesky, SolvesWithItsFactorAndRefusesIndefiniteMatrices) {
-  const Eigen::MatrixXd root = test::random_points(6, 6, 3);
-  const Eigen::MatrixXd a = root * root.transpose() + Eigen::MatrixXd::Identity(6, 6);
-  Eigen::MatrixXd factor = a;
-  ASSERT_TRUE(cholesky_in_place(factor));
-  const Eigen::VectorXd x = Eigen::VectorXd::LinSpaced(6, 1.0, 2.0);
-  Eigen::VectorXd b = a * x;
-  cholesky_solve(factor, b);
-  EXPECT_LT((b - x).norm(), 100 * kRounding);  // the condition number is about 10
-  Eigen::MatrixXd indefinite = -Eigen::MatrixXd::Identity(3, 3);
-  EXPECT_FALSE(cholesky_in_place(indefinite));
-}
-
-// A zero diagonal has no unknown; of two equal columns each has half of the weight.
-TEST(SolveWithRidge, SolvesWhatIsOnlySemidefinite) {
-  Eigen::MatrixXd a(3, 3);
-  a << 4.0, 4.0, 0.0, 4.0, 4.0, 0.0, 0.0, 0.0, 0.0;
-  const Eigen::VectorXd x = solve_with_ridge(a, Eigen::Vector3d(8.0, 8.0, 5.0), 1e-12);
-  EXPECT_NEAR(x(0), 1.0, 1e-3);  // rounding over the ridge
-  EXPECT_NEAR(x(1), 1.0, 1e-3);
-  EXPECT_EQ(x(2), 0.0);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "models/model/domain_guard.h"
+#include "models/model/fitted_model.h"
 
 #include <gtest/gtest.h>
 
@@ -59,19 +59,6 @@ TEST(DomainGuard, FarAwayThereIsNoTrust) {
   }
 }
 
-// g(distance): the smoothstep of the header, around a single site. The guard
-// measures distances in single precision: 6e-8 of 0.3 at a slope below 10.
-TEST(DomainGuard, IsTheSmoothstepBetweenTheRadii) {
-  const DomainCover cover = make_cover(Eigen::MatrixXd::Zero(2, 1));
-  const DomainGuard guard(cover);
-  for (double r = 0.0; r < 1.5 * cover.outer_radius; r += 0.001) {
-    const double t = std::clamp((cover.outer_radius - r) / (cover.outer_radius - cover.inner_radius), 0.0, 1.0);
-    EXPECT_NEAR(guard.trust(Eigen::Vector2d(0.6 * r, 0.8 * r).eval().data()), t * t * (3.0 - 2.0 * t), 1e-6);
-  }
-}
-
-TEST(DomainGuard, IdenticalSitesMakeOnePoint) { EXPECT_EQ(make_cover(Eigen::MatrixXd::Ones(4, 300)).points.cols(), 1); }
-
 class NearestPointsOnTarget : public testing::TestWithParam<std::int64_t> {
  protected:
   void SetUp() override { simd::use_target(GetParam()); }
@@ -109,13 +96,6 @@ TEST_P(NearestPointsOnTarget, AResultDoesNotDependOnTheQueriesBefore) {
         EXPECT_EQ(near.squared(query, std::nextafter(enough, 0.0F)), squared > 0.0 ? squared : 0.0);
       }
     }
-}
-
-TEST_P(NearestPointsOnTarget, NothingIsNearFarAwayOrToWhatIsNoNumber) {
-  const NearestDistance distance(random_points(2, 5, 1));
-  const double infinity = std::numeric_limits<double>::infinity();
-  const double bad[][2] = {{1e30, 0}, {infinity, 0}, {0, std::numeric_limits<double>::quiet_NaN()}};
-  for (const auto& x : bad) EXPECT_EQ(distance.squared(x, 1e30F), infinity);
 }
 
 INSTANTIATE_TEST_SUITE_P(All, NearestPointsOnTarget, testing::ValuesIn(simd::all_targets()), [](const auto& instance) {

@@ -106,15 +106,5 @@ TEST(FittedModel, NotANumberGivesNoForceAndIsOutside) {
   }
 }
 
-// If a low-pass feature is NaN, there is no correction. The force is the trend, which
-// does not use it.
-TEST(FittedModel, ALowPassThatIsNoNumberLeavesTheTrend) {
-  const ModelData data = test::example_model("greedy", KernelKind::cubic, test::paper_features(), 1);
-  const double x[] = {3e-3, 0.0, kNan, 0.0};
-  const ForceEstimate estimate = FittedModel(data).evaluate(x);
-  EXPECT_TRUE(estimate.out_of_domain);
-  EXPECT_EQ(estimate.force_N, data.trend.at(x, data.features));
-}
-
 }  // namespace
 }  // namespace palpate

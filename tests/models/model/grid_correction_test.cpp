@@ -101,11 +101,5 @@ TEST(GridCorrection, ClampsInfinitiesAndTakesNanAsTheLowerEdge) {
   EXPECT_DOUBLE_EQ(lookup.evaluate(&nan), grid.values_N.front());
 }
 
-TEST(FillGrid, CanBeInterrupted) {
-  VoxelGrid grid = even_grid(0.0, 1.0, {200, 200});
-  const BatchFunction zero = [](const Eigen::MatrixXd&, Eigen::VectorXd& out) { out.setZero(); };
-  EXPECT_EQ(fill_grid(grid, zero, {[](double done) { return done < 0.3; }}).error().message, "interrupted");
-}
-
 }  // namespace
 }  // namespace palpate

@@ -81,15 +81,6 @@ TEST(RecordingFaults, FindsDropoutsOfTheForceWhereThereIsAForce) {
   }
 }
 
-TEST(RecordingFaults, ATapIsNoDropout) {
-  Recording taps;
-  for (int i = 0; i < 2000; ++i) {
-    const double depth_m = i % 20 == 10 ? 4e-3 : 0.0;  // 100 ms long, in one row of a slow recording
-    taps.rows.push_back({0.1 * i, depth_m + 1e-6 * std::sin(3.0 * i), 500.0 * depth_m, 0.0, 0.0});
-  }
-  EXPECT_EQ(remove_faults(taps).position_dropouts, 0u);
-}
-
 TEST(RecordingFaults, UsesTheUpdatesOfASlowChannel) {
   for (const auto column : {&RecordingRow::position_m, &RecordingRow::force_N}) {
     for (const double rows : {5.0, 12.5, 19.0, 44.0, 100.0}) {
@@ -126,27 +117,6 @@ TEST(RecordingFaults, AHeldForceMayBeQuantisedAndJitter) {
   EXPECT_TRUE(remove_faults(late).held_force);
 }
 
-TEST(RecordingFaults, OfTwoSlowChannelsTheSlowerOneCounts) {
-  Recording recording = silicone();
-  hold(recording, &RecordingRow::position_m, 10.0);
-  hold(recording, &RecordingRow::force_N, 20.0);
-  const RecordingFaults faults = remove_faults(recording);
-  EXPECT_TRUE(faults.held_force);
-  EXPECT_NEAR(faults.update_step_s, 20e-3, 1e-3);
-  recording = silicone();
-  hold(recording, &RecordingRow::position_m, 20.0);
-  hold(recording, &RecordingRow::force_N, 20.0);
-  EXPECT_NEAR(remove_faults(recording).update_step_s, 20e-3, 1e-3);
-}
-
-TEST(RecordingFaults, AQuantisedForceIsNoSlowChannel) {
-  for (const double step_N : {1e-3, 10e-3, 0.1, 0.5}) {
-    Recording recording = silicone();
-    quantise(recording, step_N);
-    EXPECT_FALSE(remove_faults(recording).any()) << step_N;
-  }
-}
-
 // A tool that moves in steps and rests in between: the force follows in steps of its own resolution.
 TEST(RecordingFaults, AForceThatRestsWithTheToolIsNoSlowChannel) {
   Recording steps;
@@ -157,15 +127,6 @@ TEST(RecordingFaults, AForceThatRestsWithTheToolIsNoSlowChannel) {
     steps.rows.push_back({0.1 * i, depth_m + 1e-6 * random.uniform(-1.0, 1.0), force_N, 0.0, 0.0});
   }
   EXPECT_FALSE(remove_faults(steps).any());
-}
-
-TEST(RecordingFaults, AnEncoderIsNoSlowChannel) {
-  Recording ramp;  // of varying speed, in steps of 10 um
-  for (int i = 0; i < 5000; ++i) {
-    const double depth_m = 3e-3 * (1.0 - std::cos(2e-3 * i));
-    ramp.rows.push_back({1e-3 * i, 10e-6 * std::floor(depth_m / 10e-6), 300.0 * depth_m, 0.0, 0.0});
-  }
-  EXPECT_FALSE(remove_faults(ramp).any());
 }
 
 TEST(RecordingFaults, BlamesNoRealRecording) {

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <set>
 
 #include "tests/support/example_model.h"
@@ -65,11 +64,6 @@ TEST(Samples, TheSurfaceOfOneRecordingIsThatOfTheTable) {
     EXPECT_EQ(samples.strokes, 4u) << surface_m;
     expect_depths_and_forces(samples);
   }
-}
-
-TEST(Samples, ASurfaceThatIsHardlyMovedIsAtZero) {
-  EXPECT_EQ(samples_of({presses(4, 0.9 * kLeastSurface_m)}).surface_m, 0.0);
-  EXPECT_NE(samples_of({presses(4, 1.2 * kLeastSurface_m)}).surface_m, 0.0);
 }
 
 TEST(Samples, OneRecordingOfThreeIsMoved) {
@@ -160,38 +154,6 @@ TEST(Samples, TheOrderOfRecordingsIsIrrelevant) {
   }
 }
 
-TEST(Samples, CountStrokesAndRecordings) {
-  Recording recording;
-  for (int i = 0; i < 40; ++i) {
-    const bool pressed = i % 10 < 3 || i >= 38;  // five presses, the first from the beginning and the last to the end
-    recording.rows.push_back({1e-3 * i, pressed ? 1e-3 : -1e-3, pressed ? 1.0 : 0.0, 0.0, 0.0});
-  }
-  const Samples samples = samples_of({recording, recording});
-  ASSERT_EQ(samples.rows.size(), 80u);
-  EXPECT_EQ(samples.stroke[0], 1);
-  EXPECT_EQ(samples.stroke[39], 5);
-  EXPECT_EQ(samples.stroke[40], 6) << "a stroke does not continue in the next recording";
-  EXPECT_EQ(samples.stroke[79], 10);
-  EXPECT_EQ(samples.strokes, 10u);
-  for (std::size_t i = 0; i < 80; ++i) {
-    EXPECT_EQ(samples.begins_recording(i), i % 40 == 0);
-    EXPECT_EQ(samples.recording[i], i < 40 ? 0 : 1);
-  }
-}
-
-TEST(Samples, MeasureTheirRanges) {
-  const Samples samples = samples_of({presses(4), presses(2)});
-  EXPECT_NEAR(samples.force_N, 2.5, 1e-9);
-  EXPECT_EQ(samples.lowest_force_N, 0.0);
-  EXPECT_EQ(samples.recorded_rows, 6000u);
-  // 0.25 s in, 0.25 s out.
-  EXPECT_NEAR(static_cast<double>(samples.contact.size()), 6 * 500.0, 12.0);
-  EXPECT_NEAR(samples.sample_s, 1e-3, 1e-9);
-  EXPECT_NEAR(samples.longest_recording_s, 3.999, 1e-9);
-  EXPECT_NEAR(samples.rms_velocity_m_per_s, 20e-3, 1e-3);  // the motion estimate lags at each turn
-  EXPECT_GT(samples.no_force_N(), 0.0);
-}
-
 // Pulls of 0.2 N, above the JND of 0.065 N at 0 N: in one sample of a hundred, or in nine samples.
 TEST(Samples, AMaterialThatPullsHasNegativeForces) {
   const auto pulled = [](int samples_that_pull) {
@@ -262,16 +224,6 @@ TEST(Samples, UnitsArePressesOrRecordings) {
   EXPECT_EQ(both.unit, both.recording);
 }
 
-// Air between the strokes, of any length, does not change the folds.
-TEST(Samples, FreeAirDoesNotChangeTheFolds) {
-  Recording longer = presses(8);
-  for (RecordingRow& row : longer.rows) row.time_s += 3.0 * std::floor(row.time_s + 0.1);
-  const Samples one = samples_of({presses(8)});
-  const Samples other = samples_of({longer});
-  ASSERT_EQ(one.contact, other.contact);
-  EXPECT_EQ(one.fold, other.fold);
-}
-
 // Every `nth` row, with the motion that was estimated from all rows.
 TEST(Samples, OfLongRecordingsEveryNthRowIsKept) {
   const std::vector<Recording> recordings{test::example_recording(60000, 1000.0, 30e-6),
@@ -289,62 +241,6 @@ TEST(Samples, OfLongRecordingsEveryNthRowIsKept) {
     ASSERT_EQ(few.rows[i].force_N, whole.rows[12 * i].force_N);
     ASSERT_EQ(few.recording[i], whole.recording[12 * i]);
   }
-}
-
-TEST(Samples, StopWheneverTheyAreAsked) {
-  const std::vector<PreparedRecordingPointer> recordings{prepare_recording(test::example_recording(150000, 1000.0)),
-                                                         prepare_recording(test::example_recording(1000, 1000.0))};
-  int questions = 0;
-  ASSERT_TRUE(make_samples(recordings, JndLine{}, {[&](double) { return ++questions > 0; }}).ok());
-  ASSERT_EQ(questions, 4) << "three within 150,000 rows and one";
-  for (int stop = 1; stop <= questions; ++stop) {
-    int asked = 0;
-    const auto stopped = make_samples(recordings, JndLine{}, {[&](double) { return ++asked < stop; }});
-    EXPECT_EQ(test::message_of(stopped), "interrupted") << stop;
-  }
-}
-
-TEST(Samples, WithoutContactThereAreNone) {
-  Recording recording = presses(2);
-  for (RecordingRow& row : recording.rows) row.position_m -= 50e-3;
-  // No force either, so that no surface is found.
-  for (RecordingRow& row : recording.rows) row.force_N = 0.0;
-  EXPECT_EQ(
-      test::message_of(make_samples({prepare_recording(recording)}, JndLine{})),
-      "no sample of the training recordings is in contact (position_m > 0): there is nothing to fit; record a press, "
-      "check the sign of position_m, or set its origin (palpate import FILE --zero contact)");
-}
-
-TEST(ThinnedRows, AreEvenlySpacedOverTheWholeWithTheMotionOfAllRows) {
-  const Recording recording = test::example_recording(1000, 1000.0);
-  const std::vector<Sample> all = thinned_rows(recording, kAllRows), few = thinned_rows(recording, 99);
-  ASSERT_EQ(all.size(), 1000u);
-  EXPECT_LE(few.size(), 99u);
-  EXPECT_GT(few.back().tool.time_s, 0.98 * all.back().tool.time_s);
-  for (const Sample& row : few) {
-    const auto same = std::ranges::find(all, row.tool.time_s, [](const Sample& one) { return one.tool.time_s; });
-    ASSERT_NE(same, all.end());
-    EXPECT_EQ(row.motion.velocity_m_per_s, same->motion.velocity_m_per_s);
-  }
-}
-
-TEST(Thinned, KeepsRowsThatAreFarEnoughApart) {
-  const Samples samples = samples_of({presses(4), presses(3)});
-  const Samples few = thinned(samples, 3.9e-3);
-  ASSERT_EQ(few.rows.size(), 1750u);
-  for (std::size_t i = 0; i < few.rows.size(); ++i) {
-    ASSERT_EQ(few.rows[i].tool.position_m, samples.rows[4 * i].tool.position_m);
-    ASSERT_EQ(few.recording[i], samples.recording[4 * i]);
-    ASSERT_EQ(few.stroke[i], samples.stroke[4 * i]);
-    ASSERT_EQ(few.fold[i], samples.fold[4 * i]);
-  }
-  for (const std::size_t i : few.contact) ASSERT_GT(few.rows[i].tool.position_m, 0.0);
-  EXPECT_EQ(few.contact.size(), static_cast<std::size_t>(std::ranges::count_if(
-                                    few.rows, [](const Sample& row) { return row.tool.position_m > 0.0; })));
-  EXPECT_EQ(few.depth_m, samples.depth_m);
-  EXPECT_EQ(few.sample_s, samples.sample_s);
-  EXPECT_EQ(few.strokes, samples.strokes);
-  EXPECT_EQ(thinned(samples, 0.0).rows.size(), samples.rows.size());
 }
 
 // Twelve features, in two filters of eight and four.
@@ -394,18 +290,6 @@ TEST(RecordingEnds, AreThoseAsRecordedWithTheMemoryOfAFilter) {
   EXPECT_NEAR(ends[1].last_position_m, 1e-3, 1e-6);
   const Eigen::MatrixXd values = must(features_at(samples, features, {samples.rows.size() - 1}));
   EXPECT_EQ(ends[1].memory, std::vector{values(1, 0)});
-}
-
-TEST(FeaturesAt, CanBeInterrupted) {
-  const Samples samples = samples_of({test::example_recording(150000, 1000.0)});
-  int questions = 0;
-  ASSERT_TRUE(features_at(samples, many_features(), samples.contact, {[&](double) { return ++questions > 0; }}).ok());
-  EXPECT_EQ(questions, 3);
-  for (int stop = 1; stop <= questions; ++stop) {
-    int asked = 0;
-    const FitControl control{[&](double) { return ++asked < stop; }};
-    EXPECT_EQ(test::message_of(features_at(samples, many_features(), samples.contact, control)), "interrupted");
-  }
 }
 
 }  // namespace

@@ -83,34 +83,11 @@ TEST(SurfaceEstimate, InventsNothing) {
   }
 }
 
-// A surface that is still recovering is touched late, so only touches after a rest count.
-TEST(SurfaceEstimate, OnlyTouchesAtRestCount) {
-  // A single touch does not determine a drift.
-  EXPECT_TRUE(std::isinf(estimate_surface(spring_presses(3, 0.5)).offset_drift_error_m));
-  EXPECT_TRUE(std::isfinite(estimate_surface(spring_presses(3, kRestBeforeTouch_s)).offset_drift_error_m));
-}
-
-// The recording begins 1 mm outside of the surface, nearer than the outer half of the free air.
-TEST(SurfaceEstimate, FindsTheSurfaceInARecordingThatBeginsNearIt) {
-  Recording recording = moved(spring_presses(3, 1.0), 0.3e-3);
-  recording.rows.erase(recording.rows.begin(), recording.rows.begin() + 100);
-  EXPECT_NEAR(estimate_surface(recording).offset_m, 0.3e-3, 0.02e-3);
-}
-
 TEST(SurfaceEstimate, MeasuresASurfaceThatMoves) {
   const SurfaceEstimate still = estimate_surface(spring_presses(3, 6.0));
   EXPECT_EQ(still.offset_drift_m, 0.0);
   const SurfaceEstimate creeping = estimate_surface(spring_presses(3, 6.0, 0.1e-3));
   EXPECT_NEAR(creeping.offset_drift_m, 0.2e-3, 0.02e-3);
-}
-
-// Some rows of the free air are pulled at by 0.1 N: the median stays, and the mean would be 0.01 N.
-TEST(SurfaceEstimate, TheForceZeroIsThatOfMostRowsInAir) {
-  Recording recording = spring_presses(3, kRestBeforeTouch_s);
-  for (std::size_t i = 0; i < recording.rows.size(); ++i) {
-    if (recording.rows[i].position_m < -2.5e-3 && i % 10 == 0) recording.rows[i].force_N += 0.1;
-  }
-  EXPECT_EQ(estimate_surface(recording).force_zero_N, 0.0);
 }
 
 TEST(SurfaceEstimate, MeasuresADriftingForceZero) {

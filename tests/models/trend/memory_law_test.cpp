@@ -40,15 +40,6 @@ TEST(IdentifyRelaxation, FindsTheTimeOfABranch) {
   }
 }
 
-TEST(IdentifyRelaxation, GivesAsManyTimesAsAreAskedFor) {
-  const Samples samples = strokes_into({0.03, 0.5});
-  for (const std::size_t count : {1u, 2u, 3u}) {
-    const auto found_s = test::must(identify_relaxation(samples, {}, true, count, {}));
-    EXPECT_EQ(found_s.size(), count);
-    EXPECT_TRUE(std::is_sorted(found_s.begin(), found_s.end()));
-  }
-}
-
 TEST(IdentifyRelaxation, RefusesRecordingsWithoutCandidatesAndCanBeInterrupted) {
   Samples samples = strokes_into({0.1});
   const FitControl stop{[](double) { return false; }};
@@ -56,14 +47,6 @@ TEST(IdentifyRelaxation, RefusesRecordingsWithoutCandidatesAndCanBeInterrupted) 
   samples.longest_recording_s = 0.01;
   EXPECT_EQ(test::message_of(identify_relaxation(samples, {}, true, 1, {})),
             "the recordings are too short to identify a relaxation time; record for longer, or pass --features scene");
-}
-
-TEST(SelectSlowing, OfAListWithoutBranchesChangesNothing) {
-  FeatureList list;
-  list.add(FeatureKind::velocity);
-  std::vector<PartGain> gains;
-  EXPECT_EQ(test::must(select_slowing(strokes_into({0.1}), {}, list, gains, {})), list);
-  EXPECT_TRUE(gains.empty());
 }
 
 TEST(SelectSlowing, FindsHowTheRelaxationDependsOnDepth) {

@@ -46,6 +46,22 @@ double rms_of(const TrendColumns& rows, const Eigen::VectorXd& x) {
   return std::sqrt(sum / static_cast<double>(rows.count()));
 }
 
+// From -1 to 2 N: the elastic response begins at 0 N only where there is free air.
+TEST(TrendEstimator, WithoutFreeAirAMaterialMayPullAtItsSurface) {
+  Samples samples = samples_of(0.0, [](const ToolSample&, const MotionEstimate& motion) {
+    return -1.0 + 3.0 * std::max(0.0, motion.position_m) / kDepth_m;
+  });
+  samples.lowest_force_N = -1.0;
+  const auto error_N = [&](bool outside) {
+    samples.surface_outside = outside;
+    const TrendColumns rows = columns_of(samples);
+    const TrendEstimator estimator(rows, {});
+    return rms_of(rows, estimator.fit(estimator.all_columns()));
+  };
+  EXPECT_LT(error_N(true), 0.01);  // the smoothness bends no line
+  EXPECT_GT(error_N(false), 0.1);
+}
+
 TEST(TrendEstimator, FindsWhatIsInTheDictionaryAndMakesNothingNegative) {
   FeatureFilter branch({test::spectrum({0.1}, {kDepth_m, {1.5, 0.5, 0.0, 0.0}})});
   FeatureList list;

@@ -119,21 +119,6 @@ TEST_F(DemoCommandsTest, OpenTakesTheFocusAndATypedPathReplacesTheOldOne) {
   EXPECT_EQ(app_->view().settings.recent, std::vector<std::string>{folder_.file("third.json")});
 }
 
-TEST_F(DemoCommandsTest, AFileThatCannotBeReadIsNotARecentOne) {
-  open("hand");
-  const std::string model = folder_.with_file("bad.json", "{\"format\": \"palpate-model\"}");
-  const std::string table = folder_.with_file("bad.csv", "time_s,position_m,force_N\n0,0,nan\n");
-  drop(model);
-  ASSERT_TRUE(until([&] { return told("bad.json"); }));
-  EXPECT_TRUE(app_->view().toasts.back().problem);
-  EXPECT_EQ(app_->session().models().size(), 2u);
-  drop(table);
-  ASSERT_TRUE(until([&] { return !app_->view().dialogs.recording_roles.problem.empty(); }));
-  EXPECT_TRUE(app_->view().settings.recent.empty());
-  press(GLFW_KEY_ENTER);
-  EXPECT_FALSE(app_->view().dialogs.recording_roles.any()) << "read";
-}
-
 TEST_F(DemoCommandsTest, AFileIsChosenWithKeysAlone) {
   open("hand");
   const std::filesystem::path before = std::filesystem::current_path();
@@ -304,22 +289,6 @@ TEST_F(DemoCommandsTest, SavesTheModelInTheHand) {
   for (const auto& entry : std::filesystem::directory_iterator(folder_.file("palpate")))
     models += load_model(entry.path().string()).ok() ? 1 : 0;
   EXPECT_EQ(models, 1u);
-}
-
-// The recording stays the material. All data of the replay are discarded.
-TEST_F(DemoCommandsTest, FromAReplayBackToTheHandWithTheSameMaterial) {
-  const std::string replayed = save_strokes("strokes.csv");
-  open("replay:" + replayed);
-  EXPECT_EQ(app_->session().reference_words(), "as recorded in strokes");
-  frames(60);
-  const std::size_t shown = app_->session().comparison().history().size();
-  press(GLFW_KEY_BACKSPACE);
-  EXPECT_EQ(app_->session().replay(), nullptr);
-  EXPECT_EQ(app_->session().scene().title, "strokes");
-  EXPECT_EQ(app_->session().scene().recordings, std::vector<std::string>{replayed});
-  EXPECT_LT(app_->session().comparison().history().size(), shown) << "curves of the old session are gone";
-  for (std::size_t i = 0; i < app_->session().models().size(); ++i)
-    EXPECT_EQ(app_->session().comparison().figures(i).errors.samples, 0u);
 }
 
 TEST_F(DemoCommandsTest, APressIsExplainedUntilItWasDone) {

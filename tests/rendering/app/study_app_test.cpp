@@ -117,22 +117,5 @@ TEST_F(StudyAppTest, EndsWithoutTheResult) {
   app_->frame();
 }
 
-TEST_F(StudyAppTest, TakesTheCodeInTheOrderItIsTyped) {
-  for (const char letter : {'s', '-', '0', '1', '2'}) app_->type(letter);
-  app_->press_key(GLFW_KEY_BACKSPACE);
-  app_->press_key(GLFW_KEY_ENTER);
-  app_->frame();
-  ASSERT_NE(app_->session(), nullptr) << app_->problem();
-  EXPECT_EQ(app_->session()->file().header().subject, "S01");
-}
-
-TEST_F(StudyAppTest, RefusesAnInvalidCode) {
-  begin("Anna");
-  EXPECT_EQ(app_->session(), nullptr);
-  EXPECT_TRUE(test::has_parts(app_->problem(), {"ANNA"}));
-  app_->frame();
-  EXPECT_FALSE(app_->closing());
-}
-
 }  // namespace
 }  // namespace palpate

@@ -55,24 +55,6 @@ TEST(CurveColumns, LoseNoPeakAndKeepGapsOpen) {
   EXPECT_FLOAT_EQ(largest_over_jnd, static_cast<float>(2.0 / jnd.at(1.0)));
 }
 
-TEST(CurveColumns, StandOnAGridOfTheirOwnSoThatCurvesDoNotShimmer) {
-  const ForceHistory history = example();
-  CurveColumns one;
-  CurveColumns other;
-  one.gather(history, {}, 2, 100.0, 101.0, 50);
-  other.gather(history, {}, 2, 100.007, 101.007, 50);  // a third of a column later
-  const auto find = [](const CurveColumns& curves, double time_s) {
-    for (const CurveColumn& column : curves.columns()) {
-      if (std::abs(column.time_s - time_s) < 1e-9) return column;
-    }
-    return CurveColumn{};
-  };
-  const CurveColumn peak = find(one, 100.33);
-  ASSERT_TRUE(peak.any);
-  EXPECT_FLOAT_EQ(peak.tick.force_N[0], 3.0F);
-  EXPECT_FLOAT_EQ(find(other, 100.33).tick.force_N[0], 3.0F);
-}
-
 // Gathering in every frame, as the window does, equals gathering at once.
 TEST(CurveColumns, ScrollingGivesWhatAFreshStartGives) {
   ForceHistory growing;
@@ -110,13 +92,6 @@ TEST(CurveColumns, ASingleTickIsAPeak) {
   EXPECT_NEAR(peak->high_over_jnd[0], 2.0 / jnd.at(1.0), 1e-4);
   EXPECT_EQ(curves.at(99.0), nullptr);
   EXPECT_EQ(curves.at(102.0), nullptr);
-}
-
-TEST(CurveColumns, HaveNothingToShowOfAnEmptyHistory) {
-  CurveColumns curves;
-  curves.gather(ForceHistory{}, {}, 3, 0.0, 10.0, 100);
-  for (const CurveColumn& column : curves.columns()) EXPECT_FALSE(column.any);
-  EXPECT_EQ(curves.highest_force_N(), 0.0F);
 }
 
 TEST(CurveColumns, WithoutAReferenceTheActiveModelPredictsItsError) {

@@ -355,19 +355,5 @@ TEST_F(ExhibitTest, AForceDeviceIsComparedBlindly) {
   picture("score");
 }
 
-TEST_F(ExhibitTest, HasOneWayOut) {
-  open_exhibit({});
-  EXPECT_EQ(app_->view().settings.theme, Theme::dark);
-  press(GLFW_KEY_ESCAPE);
-  press(GLFW_KEY_Q, GLFW_MOD_CONTROL);
-  glfwSetWindowShouldClose(app_->window().handle(), GLFW_TRUE);
-  frames(2);
-  EXPECT_FALSE(app_->closing());
-  press(GLFW_KEY_T);
-  EXPECT_EQ(app_->view().settings.theme, Theme::dark) << "a visitor changes nothing";
-  press(GLFW_KEY_Q, GLFW_MOD_CONTROL | GLFW_MOD_SHIFT);
-  EXPECT_TRUE(app_->closing());
-}
-
 }  // namespace
 }  // namespace palpate

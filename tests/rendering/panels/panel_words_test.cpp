@@ -191,27 +191,5 @@ TEST(PanelWords, ThePlotOfErrorAgainstTimeShowsAllDots) {
   EXPECT_LT(axes.x.to, 3.0) << "the budget of 1 ms is not in the plot";
 }
 
-// GLFW numbers them from 256 on, and 256 + 'V' is not V.
-TEST(PanelWords, KeysThatPrintNothingAreNoLetters) {
-  EXPECT_EQ(key_name(GLFW_KEY_V), "V");
-  EXPECT_EQ(key_name(GLFW_KEY_1), "1");
-  EXPECT_EQ(key_name(GLFW_KEY_GRAVE_ACCENT), "`");
-  EXPECT_EQ(key_name(GLFW_KEY_HOME), "Home");
-  for (const int key : {GLFW_KEY_LEFT_ALT, GLFW_KEY_KP_4, GLFW_KEY_F1, GLFW_KEY_UNKNOWN}) EXPECT_EQ(key_name(key), "");
-}
-
-TEST(PanelWords, ARecordingHasNameAndLength) {
-  RecordingStatus recording;
-  EXPECT_EQ(recording_words(recording), "");
-  recording.path = "/tmp/session.csv";
-  recording.active = true;
-  recording.seconds = 2.5;
-  recording.rows = 2500;
-  EXPECT_TRUE(test::has_parts(recording_words(recording), {"session.csv", "2.5 s", "2500"}));
-  recording.active = false;
-  recording.saving = true;
-  EXPECT_TRUE(test::has_parts(recording_words(recording), {"session.csv"}));
-}
-
 }  // namespace
 }  // namespace palpate

@@ -50,24 +50,5 @@ TEST(Layout, ThePanelIsBesideTheSceneOrBelowIt) {
   EXPECT_GT(lay_out({900, 600}).panel.at.x, 0.0F);
 }
 
-TEST(UiScale, FollowsTheEyeAndNotThePixels) {
-  const float usual = ui_scale({1280, 720, 1.0F, 1.0F}, 1.0F);
-  EXPECT_NEAR(usual, 0.78F, 0.03F);
-  EXPECT_FLOAT_EQ(ui_scale({1280, 720, 2.0F, 2.0F}, 1.0F), usual) << "a display with twice the pixels in each unit";
-  EXPECT_FLOAT_EQ(ui_scale({2560, 1440, 2.0F, 1.0F}, 1.0F), 2.0F * usual) << "one that counts in pixels";
-  EXPECT_NEAR(ui_scale({1920, 1080, 1.0F, 1.0F}, 1.0F), 1.0F, 1e-5F);
-  EXPECT_FLOAT_EQ(ui_scale({800, 1050, 1.0F, 1.0F}, 1.0F), usual) << "narrow";
-  // The scale goes in steps of 0.04.
-  EXPECT_NEAR(ui_scale({1920, 1080, 1.0F, 1.0F}, kExhibitText), 1.5F, 0.021F);
-}
-
-TEST(ModelTable, DropsColumnsInAFixedOrder) {
-  const auto width = [](int) { return 10.0F; };
-  EXPECT_EQ(shown_columns(100.0F, width), (std::vector<int>{0, 1, 2, 3, 4, 5, 6}));
-  EXPECT_EQ(shown_columns(65.0F, width), (std::vector<int>{0, 1, 3, 4, 5, 6})) << "millinewtons first";
-  EXPECT_EQ(shown_columns(45.0F, width), (std::vector<int>{0, 3, 4, 5}));
-  EXPECT_EQ(shown_columns(1.0F, width), (std::vector<int>{0, 3, 5})) << "name, error and speed stay";
-}
-
 }  // namespace
 }  // namespace palpate

@@ -3,8 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 #include "models/model/file/model_io.h"
 #include "tests/support/example_model.h"
 #include "tests/support/fake_device_bus.h"

@@ -42,24 +42,5 @@ TEST(Camera, StaysAboveTheTableBeforeTheCutAndWithinItsDistances) {
   }
 }
 
-TEST(Camera, EasesInsteadOfJumping) {
-  Camera camera;
-  camera.frame(0.1F, 0.0F, 0.2F, 0.3F, true);
-  const glm::vec3 before = camera.eye();
-  camera.orbit(1.0F, 0.0F);
-  EXPECT_EQ(camera.eye(), before);
-  camera.advance(0.016F);
-  const float first = glm::length(camera.eye() - before);
-  EXPECT_GT(first, 0.0F);
-  for (int i = 0; i < 300; ++i) camera.advance(0.016F);
-  EXPECT_LT(first, 0.3F * glm::length(camera.eye() - before));
-}
-
-TEST(Camera, PutsWhatIsBehindItFarOutside) {
-  Camera camera;
-  camera.frame(0.1F, 0.0F, 0.0F, 0.3F, true);
-  EXPECT_LT(project(camera.view_projection(1.0F), 3.0F * camera.eye(), {100.0F, 100.0F}).x, -1e5F);
-}
-
 }  // namespace
 }  // namespace palpate

@@ -92,12 +92,6 @@ TEST_F(ExportVerb, EveryMethodGivesReplaysForcesOfAnotherRecording) {
   }
 }
 
-TEST_F(ExportVerb, AMaterialThatCreepsIsExportedWithItsMemory) {
-  const std::string text = exported(recording("layered", 15.0, 1), {"--method", "trend+greedy"});
-  EXPECT_TRUE(has_feature(FeatureKind::creep));
-  EXPECT_LT(worst_N(recording("layered", 8.0, 2), text), 1e-9);
-}
-
 // The estimated noise differs slightly between two recordings, but the identified sensor is the same.
 TEST_F(ExportVerb, PositionsWithNoiseGiveReplaysForcesToo) {
   const std::string text = exported(recording("silicone", 8.0, 1, 200e-6), {"--method", "trend+random"});
@@ -120,19 +114,6 @@ TEST_F(ExportVerb, TheEncoderStepIsThatOfTheOption) {
   const std::string text = exported(recording("silicone", 6.0, 1), {"--method", "trend"}, {"--encoder-step", "1e-6"});
   EXPECT_TRUE(test::has_parts(text, {"#define PALPATE_ENCODER_STEP_M 1e-06"}));
   EXPECT_TRUE(test::has_parts(printed_, {"steps of 1 um"}));
-}
-
-TEST_F(ExportVerb, AnEncoderStepIsANumber) {
-  for (const char* step : {"nan", "inf", "-1e-6", "1"}) {
-    const std::vector<std::string> arguments = {"export", "m.json", "--c", "m.c", "--encoder-step", step};
-    EXPECT_TRUE(test::fails(2, arguments, {"--encoder-step", "expected a number from 0 to 0.1"})) << step;
-  }
-}
-
-TEST_F(ExportVerb, SaysThatARecordingIsNoModel) {
-  ASSERT_TRUE(write_recording(folder_.file("rec.csv"), recording("maxwell", 1.0, 1), {}, false).ok());
-  EXPECT_TRUE(test::fails(1, {"export", folder_.file("rec.csv"), "--c", folder_.file("m.c")},
-                          {"rec.csv is a recording, expected a model file", "palpate fit --recording "}));
 }
 
 TEST_F(ExportVerb, NeverWritesOverTheModel) {

@@ -125,21 +125,5 @@ TEST(RecordGuide, GivesTheAdviceOfCheckOnce) {
   EXPECT_TRUE(guide.update(2e6).empty()) << "nothing has changed";
 }
 
-TEST(RecordGuide, SaysThatNothingIsMissing) {
-  const test::TemporaryFolder folder;
-  const std::string path = folder.file("press.csv");
-  test::must_run({"synth", "--material", "silicone", "--seconds", "120", "--out", path});
-  // A hold of 2.6 s at the greatest depth; those of the virtual hand are shorter than the relaxation.
-  Recording recording = test::must(read_recording(path));
-  const auto deepest = std::ranges::max_element(recording.rows, {}, &RecordingRow::position_m);
-  std::for_each(deepest, recording.rows.end(), [](RecordingRow& row) { row.time_s += 2.6; });
-  std::vector<RecordingRow> hold(2600, *deepest);
-  for (std::size_t i = 0; i < hold.size(); ++i) hold[i].time_s += -2.6 + 1e-3 * static_cast<double>(i);
-  recording.rows.insert(deepest, hold.begin(), hold.end());
-  ASSERT_TRUE(write_recording(path + ".part", recording, {}, true).ok());
-  cli::RecordGuide guide(path, {{}, true});
-  EXPECT_EQ(guide.update(0.0), std::vector<std::string>{"nothing is missing: Ctrl-C ends the recording"});
-}
-
 }  // namespace
 }  // namespace palpate

@@ -66,8 +66,8 @@ std::vector<std::string> fields(const std::string& line) {
 
 TEST_F(ReplayVerb, JsonHasTheContractsFields) {
   const Json object = results(models_);
-  EXPECT_EQ(keys(object),
-            (std::vector<std::string>{"recording", "samples", "contact_samples", "surface_offset_m", "models"}));
+  EXPECT_EQ(keys(object), (std::vector<std::string>{"recording", "samples", "contact_samples", "force_zero_N",
+                                                    "surface_offset_m", "models"}));
   EXPECT_EQ(object["recording"], recording_);
   EXPECT_EQ(object["samples"], 3000);
   const std::uint64_t contact = object["contact_samples"];
@@ -158,16 +158,6 @@ TEST_F(ReplayVerb, TableHasOneRowPerModelUnderItsUnits) {
   }
 }
 
-TEST_F(ReplayVerb, NamesTheFilesThatItWrote) {
-  const std::string out = folder_.file("forces.csv"), plot = folder_.file("replay.svg");
-  EXPECT_TRUE(test::has_parts(run({models_[0]}, {"--out", out, "--plot", plot}).out, {"written  " + out, plot}));
-  // Every curve has the name of its model: beside the differences, and beside the errors against force.
-  const std::string svg = test::read_text(plot);
-  const std::size_t first = svg.find("direct-cubic-1");
-  ASSERT_NE(first, std::string::npos);
-  EXPECT_NE(svg.find("direct-cubic-1", first + 1), std::string::npos);
-}
-
 // Replays the training recording with positions moved by 0.3 mm.
 TEST_F(ReplayVerb, GivesEveryErrorAsRecordedAndWithTheSurfaceMoved) {
   Recording recording = test::example_recording(3000, 1000.0, 30e-6);
@@ -195,17 +185,6 @@ TEST_F(ReplayVerb, GivesEveryErrorAsRecordedAndWithTheSurfaceMoved) {
   const std::regex note("note: the surface of this recording is at (\\+0\\.[0-9]+) mm");
   ASSERT_TRUE(std::regex_search(table.out, said, note)) << table.out;
   EXPECT_NEAR(std::stod(said[1]), 0.3, 0.02);
-}
-
-TEST_F(ReplayVerb, SeveralRecordingsHaveAForcesFileEach) {
-  const std::string other = folder_.with_file("other.csv", test::read_text(recording_));
-  const auto ran = run(models_, {"--recording", other, "--out", folder_.file("forces.csv")});
-  ASSERT_EQ(ran.exit_code, 0) << ran.err;
-  EXPECT_FALSE(std::filesystem::exists(folder_.file("forces.csv")));
-  const std::string first = "forces_" + std::filesystem::path(recording_).filename().string();
-  EXPECT_EQ(test::read_text(folder_.file(first)), test::read_text(folder_.file("forces_other.csv")))
-      << "the same recording gives the same bytes";
-  std::filesystem::remove(other);
 }
 
 TEST_F(ReplayVerb, TheSameCommandGivesTheSameBytesInAnotherProcess) {
@@ -271,13 +250,6 @@ TEST_F(ReplayVerb, NothingIsLostWithoutForceOrAfterAnError) {
   recording_ = good;
   EXPECT_EQ(run({models_[0]}, {"--out", out, "--force"}).exit_code, 0);
   EXPECT_NE(test::read_text(out), "mine");
-}
-
-TEST_F(ReplayVerb, EqualNamesCountUpPastNamesThatAreTaken) {
-  const Json object = results(std::vector<std::string>(5, models_[0]), {"--name", "a", "a-2", "a", "b", "a"});
-  std::vector<std::string> names;
-  for (const Json& model : object["models"]) names.push_back(model["name"]);
-  EXPECT_EQ(names, (std::vector<std::string>{"a", "a-2", "a-3", "b", "a-4"}));
 }
 
 }  // namespace

@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "engine/recording/recording.h"
-#include "scenes/material/rig.h"
+#include "scenes/material/material.h"
 #include "tests/support/message_parts.h"
 #include "tests/support/run_program.h"
 #include "tests/support/temporary_folder.h"
@@ -17,27 +17,6 @@ TEST(Synth, ListsTheMaterialsWithTheirRelaxationTimes) {
   EXPECT_EQ(run.err, "");
   for (const Material& material : materials())
     EXPECT_TRUE(test::has_parts(run.out, {std::string(material.name), std::string(material.relaxation_times)}));
-}
-
-TEST(Synth, WritesTheRecordingOfTheLibrary) {
-  const test::TemporaryFolder folder;
-  const std::string path = folder.file("maxwell.csv");
-  const auto run = test::must_run(
-      {"synth", "--material", "maxwell", "--seed", "3", "--seconds", "2", "--rate", "500", "--out", path});
-  EXPECT_EQ(run.out, "written  " + path + ": 1000 rows, 1.998 s\n");
-  EXPECT_EQ(run.err, "");
-  const Recording read = test::must(read_recording(path));
-  EXPECT_EQ(test::read_text(path).rfind("# virtual recording by palpate synth", 0), 0u);
-  const Recording rig = test::must(record_sensors({"maxwell", 3, 2.0, 500.0}));
-  ASSERT_EQ(read.rows.size(), 1000u);
-  EXPECT_TRUE(read.columns.acceleration);
-  for (std::size_t i = 0; i < read.rows.size(); ++i) {
-    const RecordingRow& expected = rig.rows[i];
-    ASSERT_EQ(read.rows[i].time_s, expected.time_s);
-    ASSERT_EQ(read.rows[i].position_m, expected.position_m);
-    ASSERT_EQ(read.rows[i].force_N, expected.force_N);
-    ASSERT_EQ(read.rows[i].acceleration_m_per_s2, expected.acceleration_m_per_s2);
-  }
 }
 
 TEST(Synth, WritesOverNothingWithoutForce) {

@@ -79,62 +79,31 @@ TEST(Evaluate, RecordingsArePooledWithASurfaceEach) {
   }
 }
 
-TEST(Evaluate, SamplesThatAreNotCountedAreReplayed) {
-  const Recording recording = test::example_recording(800, 1000.0);
-  std::uint64_t counted = 0;
-  double largest_N = 0.0;  // error of the first model
+// A recording that begins under a preload of 1 N as the training did, 10 mm from there.
+TEST(Evaluate, TheSamePreloadElsewhereIsAColumnOfItsOwn) {
+  ModelData data = test::example_models().front();
+  data.ends = {{-9e-3, -5e-3, std::vector<double>(memory_size(data.features)), 1.05}};
+  const std::vector<EvaluatedModel> models{{std::make_shared<const FittedModel>(data), data.jnd}};
+  Recording recording = test::example_recording(800, 1000.0);
+  for (RecordingRow& row : recording.rows) row.position_m += 1e-3 - recording.rows.front().position_m;
+  const auto offset_m = [&](double first_N) {
+    recording.rows.front().force_N = first_N;
+    return preload_offset_m(recording, models.front());
+  };
+  EXPECT_DOUBLE_EQ(offset_m(1.0), 10e-3);
+  EXPECT_EQ(offset_m(0.1), 0.0) << "no preload";
+  EXPECT_EQ(offset_m(1.5), 0.0) << "another preload: the JND is 0.16 N";
+  recording.rows.front().force_N = 1.0;
   EvaluationRequest request;
-  request.counted_from_s = recording.rows[400].time_s;
-  request.also = [&](const RecordingRow& row, const TickSnapshot& snapshot, const HapticsTick&) {
-    if (row.time_s < request.counted_from_s || !snapshot.in_contact) return;
-    ++counted;
-    largest_N = std::max(largest_N, std::abs(snapshot.force_N[0] - row.force_N));
-  };
-  const auto result = test::must(evaluate(recording, example_list(), request));
-  EXPECT_EQ(result.samples, 800u);
-  EXPECT_GT(counted, 0u);
-  EXPECT_EQ(result.no_force.summary().samples, counted);
-  EXPECT_EQ(result.models[0].as_recorded.summary().max_error_N, largest_N);
-}
-
-TEST(Evaluate, AModelThatIsGivenTwiceIsReplayedOnce) {
-  const Recording recording = test::example_recording(500, 1000.0);
-  std::vector<EvaluatedModel> models = example_list();
-  const std::size_t different = models.size();
-  models.push_back(models.front());
-  EvaluationRequest request;
-  request.also = [&](const RecordingRow&, const TickSnapshot& snapshot, const HapticsTick&) {
-    EXPECT_EQ(snapshot.model_count, different);
-  };
-  const auto result = test::must(evaluate(recording, models, request));
-  EXPECT_EQ(result.models.back().as_recorded.summary().rms_error_N,
-            result.models.front().as_recorded.summary().rms_error_N);
-  EXPECT_EQ(result.models.back().surface_moved.summary().rms_error_N,
-            result.models.front().surface_moved.summary().rms_error_N);
-  EXPECT_EQ(result.models.back().surfaces[0].at, result.models.front().surfaces[0].at);
-}
-
-TEST(Evaluate, NoForceErrsByTheWholeForce) {
-  const Recording recording = test::example_recording(300, 1000.0);
-  const auto result = test::must(evaluate(recording, example_list()));
-  double largest_N = 0.0;
-  for (const RecordingRow& row : recording.rows) {
-    if (row.position_m > 0.0) largest_N = std::max(largest_N, std::abs(row.force_N));
-  }
-  EXPECT_EQ(result.no_force.summary().max_error_N, largest_N);
-}
-
-// In to 4 mm, held there for 2 s, and out at 50 mm/s.
-TEST(Evaluate, AMomentIsSaidInThreeWords) {
-  const auto at = [](std::size_t i) {
-    const double time_s = 1e-3 * static_cast<double>(i);
-    const double depth_m = std::min({4e-3, 0.02 * time_s, 4e-3 - 0.05 * (time_s - 2.2)});
-    return std::pair(time_s, depth_m);
-  };
-  const auto words = [&](std::size_t i) { return motion_words(motion_at(i, 2300, at)); };
-  EXPECT_EQ(words(100), "press, 2 mm");
-  EXPECT_EQ(words(1700), "hold, 4 mm, for 1.5 s");
-  EXPECT_EQ(words(2240), "fast release, 2 mm, after a hold of 2 s");
+  EXPECT_EQ(test::must(evaluate(recording, models, request)).models[0].beginning_moved.summary().samples, 0u);
+  request.move_beginning = true;
+  const auto found = test::must(evaluate(recording, models, request));
+  EXPECT_EQ(found.models[0].beginning_m, 10e-3);
+  for (RecordingRow& row : recording.rows) row.position_m -= 10e-3;
+  const auto there = test::must(evaluate(recording, models));
+  EXPECT_EQ(found.models[0].beginning_moved.summary().samples, there.models[0].as_recorded.summary().samples);
+  EXPECT_NEAR(found.models[0].beginning_moved.summary().rms_error_N, there.models[0].as_recorded.summary().rms_error_N,
+              1e-9);
 }
 
 TEST(ModelErrors, CountErrorsWithinTheBoundAndKnowWhenItSaysNothing) {

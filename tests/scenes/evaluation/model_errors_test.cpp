@@ -11,15 +11,6 @@
 namespace palpate {
 namespace {
 
-TEST(StrokeCounter, AStrokeGoesFromTouchToRelease) {
-  StrokeCounter counter;
-  int strokes = 0;
-  for (int i = 0; i < 1000; ++i) {  // 10 Hz: the step exceeds the longest pause that is ascribed to noise
-    strokes += counter.begins_stroke(0.1 * i, i % 100 >= 10) ? 1 : 0;
-  }
-  EXPECT_EQ(strokes, 10);
-}
-
 // Adds a recording with strokes of 100 samples, with `beyond` errors above the JND in each.
 ModelErrors strokes_with(const std::vector<int>& beyond, ModelErrors errors = ModelErrors(JndLine{})) {
   errors.begin_recording();
@@ -75,13 +66,6 @@ UnitErrors strokes_with_errors(int n) {
   return errors.unit_errors();
 }
 
-// With three units t is 4.3, and the interval is the range of all draws.
-TEST(Bootstrap, OfThreeStrokesIsTheirRange) {
-  const Interval interval = strokes_with_errors(3).p99_interval();
-  EXPECT_EQ(interval.low, 1.0);
-  EXPECT_EQ(interval.high, 3.0);
-}
-
 // The 99 % error of a draw is the largest stroke in it, k with probability (k / n)^n - ((k - 1) / n)^n. For n = 10 the
 // expanded percentiles are Phi(-1.054 x 2.262) = 0.86 % at each end: 6 has 0.6 % at or below it, 7 has 2.8 %.
 TEST(Bootstrap, DrawsWholeStrokes) {
@@ -96,21 +80,6 @@ TEST(Bootstrap, DrawsWholeStrokes) {
   EXPECT_NEAR(share_up_to(8.0), std::pow(0.8, 10), 0.03);
   EXPECT_EQ(errors.p99_interval().low, 7.0);
   EXPECT_EQ(errors.p99_interval().high, 10.0);
-}
-
-// The 99 % error of a draw has the nearest rank, as that of all samples: one of 99 samples is more than a hundredth.
-TEST(Bootstrap, ADrawHasTheNearestRank) {
-  for (const int samples : {99, 100, 101}) {
-    ModelErrors errors(JndLine{1.0, 0.0});
-    for (int stroke = 0; stroke < 3; ++stroke) {
-      errors.begin_stroke();
-      for (int i = 0; i < samples; ++i) errors.add(i == 0 ? 9.0 : 0.1, 0.0, false);
-    }
-    const UnitErrors unit_errors = errors.unit_errors();
-    EXPECT_NEAR(unit_errors.p99_error_over_jnd, samples == 99 ? 9.0 : 0.1, 1e-6);
-    for (const float one : unit_errors.drawn_units.p99)
-      ASSERT_EQ(static_cast<double>(one), unit_errors.p99_error_over_jnd) << samples;
-  }
 }
 
 // Phi(-sqrt(10 / 9) x 2.262) = 0.86 % of 2,000 draws are 17, Phi(-sqrt(30 / 29) x 2.045) = 1.88 % are 37.
@@ -131,57 +100,12 @@ TEST(Bootstrap, IsTheSameInEveryRunAndForEveryModelOfTheSameStrokes) {
   EXPECT_EQ(none.interval.high, 0.0);
 }
 
-// A draw counts a sample as often as its stroke was drawn: with one long stroke of small errors the short ones matter
-// only where they are more than a hundredth of the samples.
-TEST(Bootstrap, WeighsStrokesByTheirSamples) {
-  ModelErrors errors(JndLine{1.0, 0.0});
-  for (const auto& [samples, error] : {std::pair{1000, 0.1}, {1000, 0.1}, {1000, 0.1}, {5, 9.0}}) {
-    errors.begin_stroke();
-    for (int i = 0; i < samples; ++i) errors.add(error, 0.0, false);
-  }
-  const UnitErrors unit_errors = errors.unit_errors();
-  EXPECT_NEAR(unit_errors.p99_error_over_jnd, 0.1, 1e-6);
-  EXPECT_NEAR(unit_errors.p99_interval().low, 0.1, 1e-6);
-  // All four draws are the short stroke with probability 1 / 256; with three of four it has 15 of 1,015 samples.
-  EXPECT_NEAR(unit_errors.p99_interval().high, 9.0, 1e-6);
-}
-
 TEST(ModelErrors, TooFewUnitsHaveNoIntervalAnywhere) {
   const UnitErrors unit_errors = strokes_with({3, 5}).unit_errors();
   EXPECT_FALSE(unit_errors.has_intervals());
   EXPECT_FALSE(unit_errors.p99_interval().known());
   EXPECT_TRUE(std::isnan(unit_errors.within_at_least()));
   EXPECT_FALSE(paired_difference(unit_errors, unit_errors).interval.known());
-}
-
-TEST(ModelErrors, WithoutSamplesThereIsNothing) {
-  const UnitErrors unit_errors = ModelErrors(JndLine{}).unit_errors();
-  EXPECT_EQ(unit_errors.samples, 0u);
-  EXPECT_EQ(unit_errors.units(), 0u);
-  EXPECT_EQ(unit_errors.within_jnd, 0.0);
-  EXPECT_EQ(unit_errors.p99_error_over_jnd, 0.0);
-  EXPECT_TRUE(unit_errors.bins.empty());
-}
-
-TEST(ModelErrors, TheJndIsThatOfTheMeasuredForce) {
-  ModelErrors errors(JndLine{});
-  errors.add(2.0 + 0.065 + 0.0633 * 2.0 - 1e-9, 2.0, false);
-  errors.add(2.0 + 0.065 + 0.0633 * 2.0 + 1e-9, 2.0, false);
-  EXPECT_EQ(errors.summary().within_jnd, 0.5);
-}
-
-TEST(ModelErrors, PercentileIsTheNearestRank) {
-  for (const int n : {1, 2, 99, 100, 101, 200, 1000}) {
-    ModelErrors errors(JndLine{1.0, 0.0});
-    for (int i = n; i >= 1; --i) errors.add(i, 0.0, false);
-    const double expected = std::ceil(0.99 * n - 1e-9);
-    EXPECT_NEAR(errors.summary().p99_error_over_jnd, expected, expected * 1e-7) << n;
-  }
-}
-
-// Twelve strokes are all within the JND. The exact 95 % limit of the share beyond is 1 - 0.05^(1/12).
-TEST(ModelErrors, WhereNothingGoesBeyondTheBoundIsExact) {
-  EXPECT_NEAR(strokes_with(std::vector<int>(12, 0)).unit_errors().within_at_least(), 0.7791, 1e-4);
 }
 
 // One model has an error larger by 0.03 JND in every stroke, and strokes differ by thirty

@@ -8,8 +8,6 @@
 namespace palpate {
 namespace {
 
-using test::RecordingPtr;
-
 Recording shorter(RigSettings settings, std::uint64_t seed) {
   settings.seed = seed;
   settings.seconds = 12.0;
@@ -36,12 +34,6 @@ TEST(SurfaceSearch, FindsTheShiftOfATestRecording) {
       EXPECT_TRUE(found.identified) << material;
     }
   }
-}
-
-TEST(SurfaceSearch, WithoutModelsOrRowsThereIsNoSurface) {
-  const OffsetEstimate nothing = locate_surface({}, {}, JndLine{});
-  EXPECT_EQ(nothing.at, 0.0);
-  EXPECT_FALSE(nothing.identified);
 }
 
 }  // namespace

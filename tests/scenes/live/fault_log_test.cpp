@@ -49,17 +49,6 @@ TEST(FaultLog, CountsMissedDeadlinesEvenThoseOfLostSnapshots) {
   EXPECT_EQ(log.events()[0].count, 7u);
 }
 
-TEST(FaultLog, ForgetsMissedDeadlinesSomeTimeAfter) {
-  FaultLog log;
-  log.update(snapshot(0.0, 0, 1500));
-  EXPECT_NEAR(log.missed_of_late(), 0.15, 1e-3) << "of the last ten seconds";
-  for (int i = 1; i <= 40'000; ++i) log.update(snapshot(1e-3 * i, 0, 1500));
-  EXPECT_LT(log.missed_of_late(), 0.003);
-  for (int i = 1; i <= 100'000; ++i)
-    log.update(snapshot(40.0 + 1e-3 * i, 0, 1500 + static_cast<std::uint64_t>(i) / 19));
-  EXPECT_NEAR(log.missed_of_late(), 0.05, 2e-3) << "one in twenty, all the time";
-}
-
 TEST(FaultLog, AStallIsOneEvent) {
   FaultLog log;
   for (int i = 0; i < 300; ++i) log.update_window(0, 0.051 + 0.016 * i, 10.0 + 0.016 * i);
@@ -85,25 +74,6 @@ TEST(FaultLog, KeepsAlarmsUntilTheyAreAcknowledged) {
       << "the loop itself cannot latch that";
   log.acknowledge();
   EXPECT_TRUE(log.alarms(snapshot(20.0, 0)).empty());
-}
-
-TEST(FaultLog, CountsLostSnapshots) {
-  FaultLog log;
-  log.update_window(5, 0.0, 1.0);
-  log.update_window(5, 0.0, 1.1);
-  log.update_window(8, 0.0, 1.2);
-  ASSERT_EQ(log.events().size(), 1u);
-  EXPECT_EQ(log.events()[0].count, 8u);
-}
-
-TEST(FaultLog, KeepsTheLast) {
-  FaultLog log;
-  for (int i = 0; i < 500; ++i) log.update(snapshot(2.0 * i, loop_fault::kForceClamped));
-  ASSERT_EQ(log.events().size(), FaultLog::kMost);
-  EXPECT_EQ(log.events().back().loop_time_s, 998.0);
-  EXPECT_EQ(log.events().front().loop_time_s, 600.0);
-  log.update(snapshot(998.5, loop_fault::kForceClamped));
-  EXPECT_EQ(log.events().back().count, 2u);
 }
 
 }  // namespace

@@ -96,51 +96,6 @@ TEST(SessionRecorder, WritesEverySampleOfAHand) {
   EXPECT_EQ(read_text(folder.file("hand.csv")).rfind("# made by a test\n", 0), 0u);
 }
 
-TEST(SessionRecorder, WritesTheForceOfAReferenceModel) {
-  const TemporaryFolder folder;
-  PathDevice device(test::strokes);
-  Rig rig(device);
-  ASSERT_TRUE(rig.start(folder.file("a.csv"), ReferenceKind::model).ok());
-  rig.run(1000);
-  EXPECT_FALSE(rig.finish().problem);
-  const Recording recording = read_recording(folder.file("a.csv")).value();
-  ASSERT_EQ(recording.rows.size(), 1000u);
-  EXPECT_FALSE(recording.columns.velocity);
-  for (const RecordingRow& row : recording.rows) {
-    ASSERT_NEAR(row.force_N, 300.0 * std::max(0.0, row.position_m), 1e-3) << "of the position estimate";
-  }
-}
-
-// A replay at 4 kHz, of which a snapshot has every fourth sample. The replay repeats.
-TEST(SessionRecorder, ContinuesWhenAReplayRestarts) {
-  const TemporaryFolder folder;
-  Recording played;
-  for (int i = 0; i < 2000; ++i) played.rows.push_back({5.0 + i / 4000.0, 1e-3, 0.25, 0.0, 0.0});
-  ReplayDevice device(played);
-  Rig rig(device);
-  ASSERT_TRUE(rig.start(folder.file("a.csv"), ReferenceKind::measured).ok());
-  rig.run(1300);
-  const Notice notice = rig.finish();
-  EXPECT_FALSE(notice.problem);
-  const Recording recording = test::must(read_recording(folder.file("a.csv")));
-  EXPECT_NEAR(static_cast<double>(recording.rows.size()), 5200.0, 12.0);
-  EXPECT_EQ(notice.text.find(';'), std::string::npos) << notice.text;
-  int restarts = 0;
-  for (std::size_t i = 1; i < recording.rows.size(); ++i) {
-    const double step_s = recording.rows[i].time_s - recording.rows[i - 1].time_s;
-    if (step_s > 1.0) {
-      ++restarts;
-      EXPECT_NEAR(step_s, kStreamGap_s, 1e-9);
-    } else {
-      ASSERT_NEAR(step_s, 2.5e-4, 1e-9);
-    }
-  }
-  EXPECT_EQ(restarts, 2);
-  EXPECT_TRUE(test::has_parts(test::read_text(folder.file("a.csv")),
-                              {"# the time of the device began again at time_s 30.", "30 s before it were not measured",
-                               "# the time of the device began again at time_s 6", "time_s,position_m"}));
-}
-
 TEST(SessionRecorder, OmitsSamplesThatTheLoopRefused) {
   const TemporaryFolder folder;
   PathDevice device([](double time_s) { return std::fmod(time_s, 0.1) < 0.005 ? kNan : 1e-3; });
@@ -168,33 +123,6 @@ TEST(SessionRecorder, RecordsOneFileAtATime) {
   const Notice notice = rig.finish();
   EXPECT_TRUE(notice.problem) << "fewer than ten rows";
   EXPECT_EQ(folder.entries(), std::vector<std::string>{"a.csv"});
-}
-
-// The loop still puts samples of the first recording into the ring after it was stopped.
-TEST(SessionRecorder, TheSecondRecordingHasNoSamplesOfTheFirst) {
-  const TemporaryFolder folder;
-  PathDevice device([](double time_s) { return 1e-3 * time_s; });
-  Rig rig(device);
-  ASSERT_TRUE(rig.start(folder.file("a.csv"), ReferenceKind::truth).ok());
-  double begins_s = 0.0;
-  FakePacer pacer([&](int wait) -> std::int64_t {
-    if (wait == 100) {
-      const Notice first = rig.finish();
-      EXPECT_FALSE(first.problem) << first.text;
-    }
-    if (wait == 200) {
-      begins_s = rig.loop.newest().tick.time_s;
-      EXPECT_TRUE(rig.start(folder.file("b.csv"), ReferenceKind::truth).ok());
-    }
-    if (wait == 300) rig.loop.request_stop();
-    return 0;
-  });
-  rig.loop.run(pacer);
-  EXPECT_FALSE(rig.finish().problem);
-  const Recording second = read_recording(folder.file("b.csv")).value();
-  EXPECT_GT(begins_s, 0.0);
-  EXPECT_GE(second.rows.front().position_m, 1e-3 * begins_s) << "a sample of the first recording";
-  EXPECT_NEAR(static_cast<double>(second.rows.size()), 100.0, 2.0);
 }
 
 TEST(SessionRecorder, ReportsAMissingFolder) {
@@ -276,19 +204,6 @@ TEST(RecordingTime, IsStrictlyIncreasing) {
   EXPECT_EQ(time.file_time_s(7.0, true), 0.5 + kStreamGap_s);
   EXPECT_EQ(time.file_time_s(7.25, false), 0.75 + kStreamGap_s);
   EXPECT_EQ(time.last_s() - time.gaps_s(), 0.75);
-}
-
-// A pause of the device or of its cable, after which its time went on.
-TEST(RecordingTime, KeepsTheTimeOfTheDeviceOverAPause) {
-  RecordingTime time;
-  time.file_time_s(1000.0, true);
-  time.file_time_s(1000.5, false);
-  for (const double pause_s : {0.3, 1.5, 60.0}) {
-    const double before_s = time.last_s();
-    EXPECT_NEAR(time.file_time_s(1000.0 + before_s + pause_s, true).value_or(-1.0), before_s + pause_s,
-                1e-9);  // rounding at 1000 s
-  }
-  EXPECT_EQ(time.gaps_s(), 0.0);
 }
 
 }  // namespace

@@ -20,13 +20,6 @@ std::string rows(const char* header, const char* between) {
   return text;
 }
 
-TEST(ConvertedRecording, EverythingButAModelMayBeARecording) {
-  EXPECT_TRUE(may_be_recording("a.csv"));
-  EXPECT_TRUE(may_be_recording("trial.TXT"));
-  EXPECT_FALSE(may_be_recording("model.json"));
-  EXPECT_FALSE(may_be_recording("greedy-10")) << "a method";
-}
-
 TEST(ConvertedRecording, ARecordingStaysAsItIs) {
   const test::TemporaryFolder folder;
   const std::string path = folder.with_file("a.csv", rows("time_s,position_m,force_N", ","));

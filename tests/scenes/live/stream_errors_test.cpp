@@ -9,27 +9,6 @@
 namespace palpate {
 namespace {
 
-constexpr JndLine kOneNewton{1.0, 0.0};
-
-double p99(const StreamErrors& errors) { return errors.summary(kOneNewton).p99_error_over_jnd; }
-
-TEST(StreamErrors, HaveTheNinetyNinthPercentile) {
-  StreamErrors errors;
-  EXPECT_EQ(p99(errors), 0.0);
-  for (int i = 1; i <= 1000; ++i) errors.add(2e-3 * i, 0.0, kOneNewton);
-  EXPECT_NEAR(p99(errors), 1.98, 0.011 * 1.98);
-}
-
-// An error of exactly 1 JND counts as within, as in the share within the JND.
-TEST(StreamErrors, AreExactBesideOneJnd) {
-  StreamErrors errors;
-  for (int i = 0; i < 99; ++i) errors.add(1.0, 0.0, kOneNewton);
-  errors.add(1.0001, 0.0, kOneNewton);
-  EXPECT_EQ(p99(errors), 1.0);
-  errors.add(1.0001, 0.0, kOneNewton);
-  EXPECT_GT(p99(errors), 1.0);
-}
-
 TEST(StreamErrors, AreThoseOfAllSamples) {
   const JndLine jnd;
   StreamErrors stream;

@@ -36,18 +36,6 @@ TEST(TrueForce, IsTheMaterialsUnderTheSameTool) {
   }
 }
 
-TEST(TrueForce, ForgetsAtARestartAndStandsStillWithoutTime) {
-  TrueForce force(silicone()), fresh(silicone());
-  for (int i = 0; i < 300; ++i) force.step(press_at(1e-3 * i), false);
-  const double held_N = force.step(press_at(0.3), false);
-  EXPECT_GT(held_N, 0.0);
-  EXPECT_EQ(force.step(press_at(0.3), false), held_N) << "the same time again";
-  EXPECT_EQ(force.step(press_at(0.2), false), held_N) << "an earlier one";
-  for (int i = 0; i < 300; ++i) {
-    ASSERT_EQ(force.step(press_at(1e-3 * i), i == 0), fresh.step(press_at(1e-3 * i), false));
-  }
-}
-
 TEST(TrueForce, IsFitForTheTick) {
   if (!test::rt_guard_works()) GTEST_SKIP() << "the sanitizer owns malloc";
   TrueForce force(silicone());

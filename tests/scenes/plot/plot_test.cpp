@@ -5,8 +5,6 @@
 #include <algorithm>
 
 #include "engine/base/whole_file.h"
-#include "scenes/plot/draw.h"
-#include "scenes/plot/layout.h"
 #include "tests/support/message_parts.h"
 #include "tests/support/run_program.h"
 #include "tests/support/temporary_folder.h"
@@ -61,31 +59,6 @@ TEST(Plot, HoldsFromThreeTenthsOfANewtonToThreeKilonewtons) {
   }
 }
 
-TEST(Plot, TicsOfManyOrHardlyAnyDecadesAreReadable) {
-  if (!find_gnuplot()) GTEST_SKIP() << "no gnuplot here";
-  const test::TemporaryFolder folder;
-  Plot plot = errors_up_to(1.0);
-  Panel& panel = plot.panels[1];
-  panel.x = {"Centres", "", true, 10.0, 3e6};
-  panel.y = {"Error [JND]", "", true, 0.8, 1.7};
-  ASSERT_TRUE(draw_plots(folder.path(), {plot}).ok());
-  const std::string svg = *read_whole_file(folder.file("errors.svg"));
-  for (const char* tic : {">100<", ">10k<", ">1M<", ">0.8<", ">1.5<"}) {
-    EXPECT_TRUE(test::has_parts(svg, {tic})) << tic;
-  }
-}
-
-TEST(Layout, EveryLogarithmicAxisHasTwoLabelsAtLeastAndNotTooMany) {
-  for (double low = 1e-3; low < 1e4; low *= 3.7) {
-    for (double ratio = 1.05; ratio < 1e9; ratio *= 1.9) {
-      const std::vector<double> tics = log_tics({low, low * ratio}, 5);
-      EXPECT_GE(tics.size(), 2u) << low << " to " << low * ratio;
-      EXPECT_LE(tics.size(), 6u) << low << " to " << low * ratio;
-      for (const double at : tics) EXPECT_TRUE(at > 0.998 * low && at < 1.002 * low * ratio);
-    }
-  }
-}
-
 TEST(Layout, NamesAtTheEndsOfCurvesDoNotOverlap) {
   Panel panel;
   panel.names_at_ends = true;
@@ -117,27 +90,6 @@ TEST(Layout, ANameStandsAtItsPointBetweenTheBars) {
   EXPECT_DOUBLE_EQ(tags[1].y, 0.92);
 }
 
-// Eight points of which some are close together: no name covers another name.
-TEST(Layout, NamesOfNeighbouringPointsDoNotOverlap) {
-  Panel panel;
-  panel.names_at_ends = true;
-  panel.x = {"", "", false, 0.0, 10.0};
-  panel.y = {"", "", false, 0.0, 1.0};
-  const std::pair<double, double> points[] = {{3.0, 0.5}, {3.1, 0.52}, {3.05, 0.47}, {7.0, 0.5},
-                                              {2.9, 0.6}, {7.1, 0.5},  {3.0, 0.5},   {9.9, 0.01}};
-  for (const auto& [x, y] : points) panel.series.push_back({"greedy-100", 0, Mark::bars, {{x, y}}});
-  const std::vector<NameTag> tags = name_tags(panel, 0.05, 0.012);
-  const auto begin_of = [](const NameTag& tag) { return tag.begins_here ? tag.x : tag.x - 0.132; };
-  for (std::size_t i = 0; i < tags.size(); ++i) {
-    EXPECT_NEAR(tags[i].x, 0.1 * points[i].first, 1e-12);
-    EXPECT_NEAR(tags[i].y, points[i].second, 3.7 * 0.05 + 1e-12);
-    for (std::size_t k = 0; k < i; ++k) {
-      const bool beside = std::abs(begin_of(tags[i]) - begin_of(tags[k])) > 0.13;
-      EXPECT_TRUE(beside || std::abs(tags[i].y - tags[k].y) > 0.0499) << i << " and " << k;
-    }
-  }
-}
-
 TEST(Layout, MarksEachPeakBeyondTheAxisOnce) {
   Panel panel;
   panel.y = {"", "", false, -1.0, 1.0};
@@ -156,12 +108,6 @@ TEST(Plot, NamesAreTextAndNoCommands) {
   Plot plot = errors_up_to(1.0);
   plot.panels[0].title = "a\"; system('touch hit') #`x`\\";
   EXPECT_NE(test::must(plot_script(plot)).find("set title \"a'; system('touch hit') #'x''\""), std::string::npos);
-}
-
-TEST(Plot, AGapBreaksTheLine) {
-  Plot plot = errors_up_to(1.0);
-  plot.panels[0].series[0].rows[4].y = kNoValue;
-  EXPECT_NE(test::must(plot_script(plot)).find("\n\n0.6 "), std::string::npos);
 }
 
 TEST(Gnuplot, AnErrorNamesTheScript) {

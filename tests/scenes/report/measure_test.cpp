@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <map>
 #include <set>
 
 #include "models/correction/methods.h"
@@ -32,24 +31,6 @@ TEST(Choose, EveryModelIsACandidateAndTheFastestNearTheBestIsTaken) {
   EXPECT_EQ(choice.recommended, 3u);
 }
 
-TEST(HeadlineModels, AreThoseOfThePaperTheTrendAndWhatIsRecommended) {
-  ReportData data;
-  data.models = {ModelResult{}};
-  for (const ModelPlan& plan : all_plans()) data.models.push_back(result(plan_name(plan).c_str(), 0.5, 100.0));
-  const auto named = [&] {
-    std::vector<std::string> names;
-    for (const std::size_t i : headline_models(data)) names.push_back(data.models[i].name);
-    return names;
-  };
-  data.choice = choose(data.models);
-  data.choice.recommended = data.choice.best = 6;
-  const std::vector<std::string> main{"no force",   "voxel", "random-100",      "kdtree-100",
-                                      "greedy-100", "trend", "trend+greedy-100"};
-  EXPECT_EQ(named(), main);
-  data.choice.recommended = 1;
-  EXPECT_EQ(named()[1], "direct");
-}
-
 TEST(TestCurves, TheWorstStretchIsWhereTheFirstModelErrsWithoutFreeAir) {
   // 12 s; from 7 to 8 s the measured force is 50 N larger.
   Recording recording = test::example_recording(12000, 1000.0);
@@ -66,23 +47,6 @@ TEST(TestCurves, TheWorstStretchIsWhereTheFirstModelErrsWithoutFreeAir) {
   EXPECT_LE(from_s, 7.1);
   EXPECT_GE(to_s, 7.9);
   EXPECT_EQ(curves.moments[10].force_N.size(), 2u);
-}
-
-// 50 ms of a large error in the air count as a quarter of 5 s, so that five seconds of a smaller error are worse.
-TEST(TestCurves, ATouchOfAMomentIsNotTheWorst) {
-  Recording recording;
-  for (int i = 0; i < 15000; ++i) {
-    const double time_s = 1e-3 * i;
-    const bool touch = i >= 2000 && i < 2050, press = i >= 8000 && i < 14000;
-    RecordingRow row;
-    row.time_s = time_s;
-    row.position_m = touch || press ? 1e-3 : -1e-3;
-    row.force_N = touch ? 100.0 : press ? 5.0 : 0.0;
-    recording.rows.push_back(row);
-  }
-  const auto model = std::make_shared<const FittedModel>(test::example_models().front());
-  const TestCurves curves = test_curves(recording, {model}, JndLine{});
-  EXPECT_GT(curves.moments[curves.first].time_s, 3.0);
 }
 
 // Two recordings without a test, in both orders: two folds, of which one has few sites. Their surfaces differ.
@@ -118,26 +82,6 @@ TEST(Measure, HasTheMainModelsWithFiveSeedsAndNamesWithTheNumberOfCentres) {
     for (const char* family : {"voxel", "random", "kdtree", "greedy", "trend"}) EXPECT_EQ(families.count(family), 1u);
     EXPECT_TRUE(families.count("trend+greedy") == 1 || !data.models.back().same.empty());
   }
-}
-
-// Of one method there are 100 centres and the number that the training recordings select.
-TEST(Measure, AMethodHasAtMostTwoNumbersOfCentres) {
-  std::vector<PreparedRecordingPointer> recordings;
-  for (const unsigned seed : {1U, 2U})
-    recordings.push_back(prepare_recording(*record_sensors({"layered", seed, 8.0, 250.0})));
-  const auto set = test::must(split_recordings({recordings[0]}, {recordings[1]}));
-  const auto data = test::must(measure(set, test::must(load_scene("silicone_block")), false, kBudget_ns, {}));
-  std::map<std::string, int> rows;
-  for (const ModelResult& one : data.models) {
-    if (one.plan) ++rows[family_name(*one.plan)];
-  }
-  const ErrorBySize& errors = data.by_size.at(Base::force);
-  ASSERT_EQ(errors.size(), std::size(kSizes));
-  const int selected = std::ranges::min_element(errors, {}, &std::pair<int, double>::second)->first;
-  for (const char* family : {"random", "kdtree", "greedy"}) EXPECT_EQ(rows[family], selected == 100 ? 1 : 2) << family;
-  for (const char* family : {"direct", "voxel", "trend"}) EXPECT_EQ(rows[family], 1) << family;
-  EXPECT_EQ(data.choices.count(0), 1u);
-  EXPECT_EQ(data.choices.count(selected), 1u);
 }
 
 }  // namespace

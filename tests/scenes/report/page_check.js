@@ -1,9 +1,11 @@
-// Appended to a page by report_test: checks it in a real browser and says the result in the title.
+// Appended to a page by report_test, which shows it in a frame: checks it in a real browser and tells the result.
 (() => {
   const wrong = [...window.messages];
   const expect = (holds, what) => { if (!holds) wrong.push(what); };
   const all = selector => [...document.querySelectorAll(selector)];
   expect(document.documentElement.scrollWidth <= innerWidth, 'the page is wider than the window');
+  for (const table of all('.headline .table'))
+    expect(table.scrollWidth <= table.clientWidth + 1, 'the first table is cut');
   // Names and labels of a figure do not overlap each other and are not cut.
   for (const svg of all('figure svg')) {
     const edge = svg.getBoundingClientRect();
@@ -38,5 +40,5 @@
   } else {
     expect(!document.getElementById('curves-data'), 'no curves');
   }
-  document.title = wrong.length ? 'wrong: ' + wrong.join('; ') : 'checked';
+  parent.postMessage(location.pathname.split('/').at(-2) + ' ' + innerWidth + ': ' + (wrong.join('; ') || 'right'), '*');
 })();

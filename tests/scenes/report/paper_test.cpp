@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <array>
-#include <cmath>
 #include <string>
 #include <utility>
 
@@ -98,97 +97,6 @@ TEST(PaperClaims, WhatDependsOnMachineRecordingOrSubjectsIsNeverReproduced) {
   EXPECT_EQ(verdict_of(example(), "time of a fit"), ClaimVerdict::other_machine);
   EXPECT_EQ(verdict_of(example(), "samples after"), ClaimVerdict::other_recording);
   EXPECT_EQ(verdict_of(example(), "relative JND"), ClaimVerdict::other_subjects);
-}
-
-TEST(PaperClaims, AQuickRunDecidesNoRatio) {
-  PaperData data = example();
-  data.quick = true;
-  for (const char* claim :
-       {"kD-tree is more accurate", "than random and kD-tree", "the longer", "greedy is linear in", "tenfold"})
-    EXPECT_EQ(verdict_of(data, claim), ClaimVerdict::undecided) << claim;
-  EXPECT_EQ(verdict_of(data, "greedy-100: mean"), ClaimVerdict::reproduced);
-}
-
-// A claim fails on either side of its tolerance.
-TEST(PaperClaims, ToleranceHasTwoSides) {
-  for (const double solve_s : {8.0 * std::pow(2.0, 0.5), 8.0 * std::pow(2.0, 4.9)}) {
-    PaperData data = example();
-    data.by_sites[2].solve_s = solve_s;
-    EXPECT_EQ(verdict_of(data, "third power"), ClaimVerdict::different) << solve_s;
-  }
-  for (const double fit_s : {10.0, 32.0}) {
-    PaperData data = example();
-    data.by_sites[2].seconds[kGreedy100] = fit_s;
-    EXPECT_EQ(verdict_of(data, "greedy is linear in"), ClaimVerdict::different) << fit_s;
-  }
-  for (const double grid_s : {25.0, 60.0}) {
-    PaperData data = example();
-    data.by_dimension[2].grid_s = grid_s;
-    EXPECT_EQ(verdict_of(data, "tenfold"), ClaimVerdict::different) << grid_s;
-  }
-  for (const double scale : {0.5, 1.0}) {
-    PaperData data = example();
-    set_errors(data.runs[0].models[kGridOfAll], {scale, scale, scale});
-    EXPECT_EQ(verdict_of(data, "almost as accurate"), ClaimVerdict::different) << scale;
-  }
-  for (const double scale : {0.15, 0.95}) {
-    PaperData data = example();
-    set_errors(data.runs[0].models[kTreeCentres], {scale, scale, scale});
-    EXPECT_EQ(verdict_of(data, "kD-tree is more accurate"), ClaimVerdict::different) << scale;
-    data = example();
-    set_errors(data.runs[0].models[kGreedy100], {scale, scale, scale});
-    EXPECT_EQ(verdict_of(data, "than random and kD-tree"), ClaimVerdict::different) << scale;
-  }
-  for (const double fit_s : {2.0, 16.0}) {  // of kD-tree, beside 2 s of random and 8 s of greedy-20
-    PaperData data = example();
-    data.by_sites[2].seconds = {70.0, 2.0, fit_s, 8.0 * fit_s, 64.0 * fit_s};
-    EXPECT_EQ(verdict_of(data, "the longer it takes"), ClaimVerdict::different) << fit_s;
-  }
-}
-
-// The order counts by the errors: the more accurate of two that take equally long refutes it, whatever its name.
-TEST(PaperClaims, AnAccurateSelectionThatIsQuickRefutesTheOrder) {
-  PaperData data = example();
-  set_errors(data.runs[0].models[kRandomCentres], {0.5, 0.5, 0.5});
-  EXPECT_EQ(verdict_of(data, "the longer it takes"), ClaimVerdict::different);
-  data.by_dimension[0].grid_s = 5.0;
-  data.by_dimension[2].greedy_s = 2.0;
-  data.by_centres[2].evaluation_s = 2.0e-6;
-  for (const char* claim : {"more than four dimensions", "grow exponentially", "linear in the centres"})
-    EXPECT_EQ(verdict_of(data, claim), ClaimVerdict::different) << claim;
-}
-
-TEST(PaperClaims, OneBinAboveTheJndIsEnoughToRefuteAlways) {
-  PaperData data = example();
-  data.runs[0].models[kTreeCentres].errors.bins[1].error_N.add(3.0 * data.jnd.at(1.0));
-  EXPECT_EQ(verdict_of(data, "kD-tree: mean plus deviation"), ClaimVerdict::different);
-  EXPECT_EQ(verdict_of(data, "greedy-100: mean"), ClaimVerdict::reproduced);
-}
-
-// What the paper leaves open is blamed only where another setting passes.
-TEST(PaperClaims, SettingsAreTheCauseWhereOneOfThemPasses) {
-  PaperData data = example();
-  PaperRun& run = data.runs[0];
-  set_errors(run.models[kTreeCentres], {2.0, 0.9, 2.0});
-  run.settings = {run.models[kTreeCentres], run.models[kTreeCentres]};
-  set_errors(run.settings[1], {2.0, 0.9, 0.9});
-  Claim claim = claim_of(data, "kD-tree: mean");
-  EXPECT_EQ(claim.here.front().text, "2 of 3 bins above; 1 to 2 with other settings");
-  EXPECT_NE(claim.why.find("it fails with each"), std::string::npos) << claim.why;
-  set_errors(run.settings[1], {0.9, 0.9, 0.9});
-  claim = claim_of(data, "kD-tree: mean");
-  EXPECT_NE(claim.why.find("One passes on silicone."), std::string::npos) << claim.why;
-}
-
-TEST(PaperClaims, DifferencesAndBusyMachinesHaveARemark) {
-  PaperData data = example();
-  data.slowest_round = 3.0;
-  for (const Claim& one : paper_claims(data)) {
-    EXPECT_TRUE(one.here.front().verdict != ClaimVerdict::different || !one.why.empty()) << one.claim;
-    if (one.claim.find("third power") != std::string::npos) {
-      EXPECT_NE(one.why.find("Busy"), std::string::npos);
-    }
-  }
 }
 
 // Eight seconds: a fifth of the recordings of both materials. Every model of a run is judged on the same samples; the

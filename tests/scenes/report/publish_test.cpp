@@ -31,19 +31,6 @@ TEST(Table, JsonHasNullForNoFigure) {
             "{\"model\":\"<i>\",\"count\":0,\"rms_error_N\":null,\"share\":1.0}]");
 }
 
-TEST(Table, HtmlShowsUnitsEscapesTextAndAlignsNumbers) {
-  const std::string html = table_html(example());
-  EXPECT_TRUE(test::has_parts(html, {"<th class=\"text\">model</th><th>count</th><th>RMS [mN]</th>",
-                                     "<td class=\"text\">a,&quot;b&quot;</td><td>12,345</td><td>100</td><td>99.95</td>",
-                                     "&lt;i&gt;</td><td>0</td><td>–</td><td>100.00</td>"}));
-}
-
-TEST(Table, TextIsThatOfThePageWithoutMarks) {
-  EXPECT_EQ(table_text(example()), (std::vector<std::vector<std::string>>{{"model", "count", "RMS [mN]", "share [%]"},
-                                                                          {"a,\"b\"", "12,345", "100", "99.95"},
-                                                                          {"<i>", "0", "–", "100.00"}}));
-}
-
 TEST(Table, AnIntervalStandsUnderItsFigureAndInTheFileBesideIt) {
   const Table table{"example",
                     false,
@@ -51,17 +38,6 @@ TEST(Table, AnIntervalStandsUnderItsFigureAndInTheFileBesideIt) {
                     {{0.5, 0.25, 0.75}}};
   EXPECT_EQ(table_csv(table), "share,share_low,share_high\n0.5,0.25,0.75\n");
   EXPECT_TRUE(test::has_parts(table_html(table), {"<td>50.0<small>25.0–75.0</small></td></tr>"}));
-}
-
-TEST(Table, ATruthValueIsAWordOnThePage) {
-  const Table table{"example", false, {{"expected", "as expected"}}, {{true}, {false}}};
-  EXPECT_EQ(table_csv(table), "expected\ntrue\nfalse\n");
-  EXPECT_EQ(table_json(table).dump(), "[{\"expected\":true},{\"expected\":false}]");
-  EXPECT_EQ(table_text(table), (std::vector<std::vector<std::string>>{{"as expected"}, {"yes"}, {"no"}}));
-}
-
-TEST(Table, ARowWithoutCellsBreaksALine) {
-  EXPECT_EQ(table_csv({"t", false, {{"x", ""}}, {{1.0}, {}, {2.0}}}), "x\n1\n\n2\n");
 }
 
 TEST(ReportFolder, AppearsWholeOnCommit) {
@@ -94,14 +70,6 @@ TEST(ReportFolder, ReplacesAnEarlierReportOnlyWhenForced) {
   EXPECT_EQ(test::read_text(out + "/report.json"), "new");
   EXPECT_FALSE(std::filesystem::exists(out + "/old.csv"));
   EXPECT_EQ(folder.entries(), std::vector<std::string>{"report"});
-}
-
-TEST(ReportFolder, LeavesNothingBesideWhileTheReportIsMade) {
-  const test::TemporaryFolder folder;
-  auto report = test::must(ReportFolder::create(folder.file("report"), false));
-  EXPECT_TRUE(folder.entries().empty());
-  ASSERT_TRUE(report.write("report.json", "{}").ok());
-  EXPECT_EQ(folder.entries().size(), 1u);
 }
 
 TEST(ReportFolder, RemovesTheFoldersOfKilledPrograms) {
@@ -139,15 +107,6 @@ TEST(ReportFolder, NeverTakesTheWayOfSomethingElse) {
   EXPECT_NE(refused(""), "accepted");
   EXPECT_NE(refused(".."), "accepted");
   EXPECT_EQ(test::read_text(folder.file("home/thesis.txt")), "mine");
-}
-
-TEST(InlineSvg, FollowsThePageAndKeepsItsIdsApart) {
-  const std::string svg =
-      "<?xml version=\"1.0\"?>\n<svg width=\"9\" viewBox=\"0 0 9 9\">\n<title>x</title><desc>y</desc>\n"
-      "<path id='p' stroke='rgb( 34,  34,  34)' fill=\"#FEFEFE\" stop='#fefefe'/><use xlink:href='#p'/></svg>";
-  EXPECT_EQ(inline_svg(svg, "n", "a < b"),
-            "<svg viewBox=\"0 0 9 9\" role=\"img\" aria-label=\"a &lt; b\">\n\n"
-            "<path id='n-p' stroke='var(--ink)' fill=\"var(--paper)\" stop='var(--paper)'/><use href='#n-p'/></svg>");
 }
 
 }  // namespace

@@ -83,26 +83,11 @@ TEST(ReportRecordings, OfASingleOneABlockAtItsEndIsTested) {
   EXPECT_TRUE(set.is_tested(0)) << "by a fit to the rest of it";
 }
 
-TEST(ReportRecordings, TheirOrderDoesNotMatter) {
-  const auto one = split({noisy("a"), noisy("b")}, {noisy("c")});
-  const auto other = split({noisy("b"), noisy("a")}, {noisy("c")});
-  ASSERT_TRUE(one.ok() && other.ok());
-  for (std::size_t i = 0; i < one->all.size(); ++i) {
-    EXPECT_EQ(one->all[i]->recording.name, other->all[i]->recording.name);
-    EXPECT_EQ(one->all[i]->content_hash, other->all[i]->content_hash);
-  }
-}
-
 TEST(ReportRecordings, RefusesUnusableRecordings) {
   EXPECT_TRUE(test::has_parts(split({noisy("short", 100)}, {}), {"100 rows", "1000", "--test"}));
   Recording air = noisy("air", 100);
   for (RecordingRow& row : air.rows) row.position_m = -1e-3 - 1e-6 * row.time_s;
   EXPECT_TRUE(test::has_parts(split({noisy("a")}, {air}), {"air: ", "position_m > 0", "; "}));
-}
-
-TEST(Leakage, TheSameMotionWithItsOwnNoiseIsNoLeak) {
-  EXPECT_EQ(shared_stretch(noisy("train"), noisy("test")).rows, 0u);
-  EXPECT_TRUE(split({noisy("train")}, {noisy("test")}).ok());
 }
 
 TEST(Leakage, ACopyUnderAnotherNameIsRefusedByName) {
@@ -129,15 +114,6 @@ TEST(Leakage, AStretchOfTheTrainingInATestIsFoundWhereverItLies) {
   EXPECT_EQ(stretch.first_row, 777u);
   EXPECT_EQ(stretch.trained_row, 331u);
   EXPECT_TRUE(palpate::test::has_parts(split({train}, {test}), {"100 rows from 0.777 s", "0.331 s"}));
-}
-
-TEST(Leakage, SilenceIsNoContent) {
-  Recording train = noisy("train");
-  Recording test = noisy("test");
-  for (Recording* recording : {&train, &test}) {
-    for (std::size_t i = 0; i < 500; ++i) recording->rows[i].force_N = 0.0;
-  }
-  EXPECT_EQ(shared_stretch(train, test).rows, 0u);
 }
 
 }  // namespace

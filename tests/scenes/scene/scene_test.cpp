@@ -1,12 +1,16 @@
 #include "scenes/scene/scene.h"
 
 #include <gtest/gtest.h>
-
 #include <nlohmann/json.hpp>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
 
 #include "models/fit/fit.h"
 #include "scenes/material/material.h"
 #include "tests/support/message_parts.h"
+#include "tests/support/run_program.h"
 #include "tests/support/temporary_folder.h"
 
 namespace palpate {
@@ -79,17 +83,6 @@ TEST(SceneReader, ReadsEveryField) {
   EXPECT_EQ(scene.strongest_press_N, 5.0) << "may be left out";
 }
 
-TEST(SceneReader, TakesAStrongestPressAndTheJndFromAFile) {
-  const test::TemporaryFolder folder;
-  folder.with_file("own.json", R"({"format": "palpate-jnd", "version": 1, "offset_N": 0.04, "weber_fraction": 0.12})");
-  const std::string line = R"("jnd": {"offset_N": 0.1, "weber_fraction": 0})";
-  const auto scene = test::must(parse_scene(
-      test::replaced(kGood, line, R"("jnd_file": "own.json", "strongest_press_N": 0.9)"), folder.file("x.json")));
-  EXPECT_EQ(scene.jnd.offset_N, 0.04);
-  EXPECT_EQ(scene.jnd.weber_fraction, 0.12);
-  EXPECT_EQ(scene.strongest_press_N, 0.9);
-}
-
 TEST(SceneReader, RefusesWithPlaceFoundAndExpected) {
   test::expect_messages(
       kGood, complaint,
@@ -113,18 +106,6 @@ TEST(SceneReader, RefusesWithPlaceFoundAndExpected) {
        {"\"#56B4E9\"}", R"("#56B4E9"}, "finish": "wood")", {"x.json:11:46:", "finish", "wood", "silicone"}},
        {R"("title")", R"("name": "x", "title")", {"x.json:2:11:", "name: found an unknown field", "title"}},
        {"#56B4E9\"", R"(#56B4E9", "tool": "#000000")", {"x.json:11:43:", "colours.tool", "block"}}});
-}
-
-TEST(SceneReader, LimitsTheNumberOfFeatures) {
-  Json document = Json::parse(kGood);
-  for (int i = 2; i < 8; ++i) {
-    document["features"].push_back({{"kind", "lowpass_velocity"}, {"relaxation_time_s", i}});
-  }
-  EXPECT_TRUE(parse_scene(document.dump(), "x.json").ok());
-  document["features"].push_back({{"kind", "velocity"}});
-  EXPECT_TRUE(test::has_parts(parse_scene(document.dump(), "x.json"), {"list of 9", "1 to 8"}));
-  document["features"] = Json::array();
-  EXPECT_FALSE(parse_scene(document.dump(), "x.json").ok());
 }
 
 // Every field in turn has a wrong type or is missing: it is refused without a crash.
@@ -160,6 +141,53 @@ TEST(JndFile, RefusesWithPlaceFoundAndExpected) {
   const std::string broken = jnd_complaint(start);
   EXPECT_EQ(broken.substr(0, 14), "jnd.json:3:1: ") << broken;
   EXPECT_TRUE(test::has_parts(read_jnd_file("/none/jnd.json"), {"/none/jnd.json", advice}));
+}
+
+TEST(Assets, TheEnvironmentDecidesAlone) {
+  const auto run = test::run_palpate({"scenes"}, {"PALPATE_ASSETS=/none"});
+  EXPECT_EQ(run.exit_code, 1);
+  EXPECT_TRUE(test::has_parts(run.err, {"error: ", "folder", "/none", "PALPATE_ASSETS"}));
+}
+
+// An installed program: bin/palpate beside share/palpate/scenes.
+TEST(Assets, AnInstalledProgramFindsItsOwn) {
+  const test::TemporaryFolder prefix;
+  std::filesystem::create_directories(prefix.file("bin"));
+  std::filesystem::copy_file(PALPATE_BINARY, prefix.file("bin/palpate"));
+  std::filesystem::create_directories(prefix.file("share/palpate/scenes"));
+  std::ofstream(prefix.file("share/palpate/scenes/note.txt")) << "no scene";
+  const auto run = test::run_program({prefix.file("bin/palpate"), "scenes"});
+  EXPECT_EQ(run.exit_code, 0);
+  EXPECT_EQ(run.out, "SCENE  TITLE  MATERIAL  FEATURES\n");
+}
+
+class UserFolders : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    for (const char* name : {"XDG_DATA_HOME", "XDG_CONFIG_HOME", "HOME"}) {
+      const char* value = std::getenv(name);
+      before_.emplace_back(name, value != nullptr ? value : "");
+      unsetenv(name);
+    }
+  }
+  void TearDown() override {
+    for (const auto& [name, value] : before_)
+      value.empty() ? unsetenv(name.c_str()) : setenv(name.c_str(), value.c_str(), 1);
+  }
+  test::TemporaryFolder folder_;
+  std::vector<std::pair<std::string, std::string>> before_;
+};
+
+TEST_F(UserFolders, FollowTheEnvironmentElseTheHome) {
+  setenv("HOME", folder_.path().c_str(), 1);
+  ASSERT_TRUE(data_folder().ok());
+  EXPECT_EQ(*data_folder(), folder_.file(".local/share/palpate"));
+  EXPECT_EQ(*config_folder(), folder_.file(".config/palpate"));
+  EXPECT_TRUE(std::filesystem::is_directory(*config_folder()));
+  setenv("XDG_DATA_HOME", folder_.file("data").c_str(), 1);
+  EXPECT_EQ(*data_folder(), folder_.file("data/palpate"));
+  setenv("XDG_DATA_HOME", "not/absolute", 1);
+  EXPECT_EQ(*data_folder(), folder_.file(".local/share/palpate"));
 }
 
 }  // namespace

@@ -30,11 +30,6 @@ std::vector<AnswerCell> expected_answers(std::initializer_list<PsychometricFunct
   return cells;
 }
 
-TEST(Psychometrics, NormalDistributionMatchesPublishedValues) {
-  EXPECT_NEAR(normal_cdf(1.0), 0.8413447460685429, 1e-15);
-  EXPECT_NEAR(normal_cdf(kCriterionQuantile), kJndCriterion, 1e-15);
-}
-
 TEST(Psychometrics, FindsTheFunctionsThatMadeTheAnswers) {
   for (const double lapse : {0.0, 0.02, 0.05}) {
     const auto cells = expected_answers({{2.0, -0.3, lapse}, {5.0, -0.3, lapse}, {12.0, -0.3, lapse}}, 5.0);
@@ -49,12 +44,6 @@ TEST(Psychometrics, FindsTheFunctionsThatMadeTheAnswers) {
   }
 }
 
-TEST(Psychometrics, JndIsHalfTheDistanceBetweenTheCriterionPoints) {
-  const PsychometricFunction function{5.0, 0.0, 0.0};
-  EXPECT_NEAR(function.at(function.jnd(), true), kJndCriterion, 1e-12);
-  EXPECT_NEAR(function.at(-function.jnd(), true), 1.0 - kJndCriterion, 1e-12);
-}
-
 TEST(Psychometrics, MarksSlopesThatAnswersDoNotBound) {
   // All correct, guesses, something between, no answers.
   std::vector<AnswerCell> cells = expected_answers({{5.0, 0.0, 0.0}}, 5.0);
@@ -66,9 +55,6 @@ TEST(Psychometrics, MarksSlopesThatAnswersDoNotBound) {
   const auto functions = fit_psychometric(cells, 4);
   for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(functions[i].determined, i == 0) << i;
 }
-
-using test::discrimination_header;
-using test::example_strokes;
 
 // A session whose answers have exactly the expected frequencies, with `repetitions` of
 // each pair in each order.
@@ -116,20 +102,6 @@ TEST(StudyAnalysis, ReproducesTheLineOfThePaper) {
   EXPECT_GT(own->lines->fitted.weber_fraction, 0.08);
 }
 
-TEST(StudyAnalysis, AveragesOverTheSubjects) {
-  const StudyData one = average_subject("S01", {0.2, 0.2, 0.2, 0.2}, 200);
-  const StudyData two = average_subject("S02", {0.1, 0.1, 0.1, 0.1}, 200);
-  const auto analysis = test::must(analyse_study({one, two}, false));
-  for (const ReferenceJnd& mean : analysis.mean.references) {
-    EXPECT_EQ(mean.count, 2u);
-    EXPECT_NEAR(mean.jnd_N, 0.15 * mean.reference_N, 2e-3 * mean.reference_N);
-    EXPECT_NEAR(mean.standard_error_N, 0.05 * mean.reference_N, 2e-3 * mean.reference_N);
-  }
-  const std::string table = analysis_table(analysis);
-  EXPECT_EQ(std::count(table.begin(), table.end(), '\n'), 1 + 8 + 4);
-  EXPECT_EQ(table.substr(table.find('\n') + 1, 17), "S01,0.3,0.3,3200,");
-}
-
 TEST(StudyAnalysis, UsesTheRenderedForces) {
   StudyData data = average_subject("S01", {0.3, 0.2, 0.15, 0.13}, 100);
   for (StudyRecord& record : data.records) {
@@ -169,26 +141,6 @@ TEST(StudyAnalysis, FindsTheJndsOfKnownSubjects) {
   }
 }
 
-TEST(StudyAnalysis, AcceptsFilesThatEndEarly) {
-  const StudyHeader header{"S01"};
-  const std::vector<StudyRecord> records = simulated_answers(header, {}, 1);
-  for (const std::size_t kept : {9u, 12u, 60u}) {
-    const StudyData cut{header, {records.begin(), records.begin() + static_cast<std::ptrdiff_t>(kept)}};
-    const auto analysis = test::must(analyse_study({cut}, false));
-    EXPECT_TRUE(std::any_of(analysis.mean.references.begin(), analysis.mean.references.end(),
-                            [](const ReferenceJnd& one) { return one.rendered_N > 0.0; }));
-  }
-}
-
-TEST(JndLineFit, FitsByLeastSquaresAndShiftsBelowAllPoints) {
-  const auto lines =
-      test::must(fit_jnd_lines({{0.0, 0.1, 0.0, "study"}, {1.0, 0.3, 0.0, "study"}, {2.0, 0.2, 0.0, "study"}}));
-  EXPECT_NEAR(lines.fitted.weber_fraction, 0.05, 1e-12);
-  EXPECT_NEAR(lines.fitted.offset_N, 0.15, 1e-12);
-  EXPECT_NEAR(lines.conservative.weber_fraction, 0.05, 1e-12);
-  EXPECT_NEAR(lines.conservative.offset_N, 0.1, 1e-12);
-}
-
 TEST(JndLineFit, RefusesDecreasingAndNegativeLines) {
   EXPECT_FALSE(fit_jnd_lines({}).ok());
   EXPECT_FALSE(fit_jnd_lines({{1.0, 0.1, 0.0, "study"}, {1.0, 0.2, 0.0, "study"}}).ok());
@@ -196,15 +148,6 @@ TEST(JndLineFit, RefusesDecreasingAndNegativeLines) {
   EXPECT_TRUE(test::has_parts(falling, {"0.4000 N + -10.00 %"}));
   const auto negative = fit_jnd_lines({{1.0, 0.1, 0.0, "study"}, {2.0, 0.3, 0.0, "study"}});
   EXPECT_TRUE(test::has_parts(negative, {"-0.1000 N + 20.00 %"}));
-}
-
-std::vector<StudyRecord> answers(std::size_t correct, std::size_t trials) {
-  std::vector<StudyRecord> records(trials);
-  for (std::size_t i = 0; i < trials; ++i) {
-    records[i].trial.comparison_first = i % 2 == 0;
-    records[i].answered_second = records[i].trial.comparison_first == (i < correct);
-  }
-  return records;
 }
 
 // (p + z^2/2n -+ z sqrt(p(1-p)/n + z^2/4n^2)) / (1 + z^2/n) with z = 1.959964; Brown, Cai &
@@ -218,17 +161,6 @@ TEST(Discrimination, HasTheIntervalOfWilson) {
   EXPECT_EQ(correct_share({"S01", 10, 10, 0}).high, 1.0);
   EXPECT_NEAR(correct_share({"S01", 10, 0, 0}).high, z2 / (10.0 + z2), 1e-6);
   EXPECT_EQ(correct_share({"S01", 0, 0, 0}).high, 1.0);
-}
-
-TEST(Discrimination, ExcludesTrialsThatWereNotRendered) {
-  std::vector<StudyRecord> records = answers(60, 100);
-  records[0].trial.training = true;
-  records[1].worst_N = 0.033;  // half a JND at 0 N is 32.5 mN
-  records[2].worst_N = 0.032;
-  const Discrimination result = discrimination_of("S01", records, *example_strokes(0.9));
-  EXPECT_EQ(result.trials, 98u);
-  EXPECT_EQ(result.correct, 58u);
-  EXPECT_EQ(result.unusable, 1u);
 }
 
 TEST(Discrimination, ComparesThePredictionWithTheAnswers) {
@@ -258,71 +190,6 @@ TEST(Discrimination, ComparesThePredictionWithTheAnswers) {
   expect(70, above, few);
   expect(97, above, "consistent.");
   EXPECT_EQ(discrimination_verdict({"S01", 0, 0, 3}, strokes), above + " No usable answers yet.");
-}
-
-TEST(Discrimination, AnalysesEachSubjectAndAllTogether) {
-  StudyData one{discrimination_header(0.9), answers(60, 100)};
-  StudyData two = one;
-  two.header.subject = "S02";
-  two.records = answers(80, 100);
-  const auto results = test::must(analyse_discrimination({one, two}));
-  EXPECT_EQ(results.back().correct, 140u);
-  EXPECT_EQ(results.back().trials, 200u);
-  const std::string table = discrimination_table(results, *one.header.strokes);
-  EXPECT_TRUE(test::has_parts(table, {"\nS02,100,80,0,0.8000,0.7112,0.8666,"}));
-  one.records.clear();
-  EXPECT_TRUE(test::has_parts(analyse_discrimination({one}), {"S01", "leave the file out"}));
-}
-
-// The share of correct answers of a subject with the JND line `jnd`, averaged over `sessions`.
-double simulated_share(double stroke_share, const JndLine& jnd, int sessions) {
-  const auto strokes = example_strokes(stroke_share);
-  double right = 0.0;
-  for (int i = 0; i < sessions; ++i) {
-    const std::string code = "S" + std::to_string(i + 1);
-    const auto records = simulated_answers({code, strokes}, {jnd, 0.0, 0.0}, static_cast<std::uint64_t>(i) + 1);
-    right += correct_share(discrimination_of(code, records, *strokes)).share / sessions;
-  }
-  return right;
-}
-
-// Three standard deviations of 4,000 answers are 0.024 at most.
-TEST(Discrimination, SimulatedSubjectsHaveTheirShareCorrect) {
-  const JndLine jnd{0.1, 0.0};
-  EXPECT_NEAR(simulated_share(1.0, jnd, 40), 0.5, 0.024) << "the same stroke twice";
-  // The largest unlimited force is 2 N, and the noise does not depend on force.
-  EXPECT_NEAR(simulated_share(1.0 - 0.1 / 2.0, jnd, 40), 0.75, 0.024) << "one JND there";
-  EXPECT_NEAR(simulated_share(1.0 + 0.1 / 2.0, jnd, 40), 0.75, 0.024) << "the larger one";
-  EXPECT_GT(simulated_share(0.5, jnd, 5), 0.99) << "grossly different";
-}
-
-double share_of_second(const SubjectTraits& traits, double first_N, double second_N) {
-  RandomStream random(3, 31);
-  int second = 0;
-  for (int i = 0; i < 20000; ++i) second += second_feels_larger(traits, first_N, second_N, random) ? 1 : 0;
-  return second / 20000.0;
-}
-
-// Three standard deviations of 20,000 draws are 0.011 at most.
-TEST(SimulatedSubject, DiscriminatesForcesByItsJnd) {
-  const SubjectTraits traits{{0.065, 0.0633}, 0.0, 0.0};
-  for (const double reference_N : {0.3, 2.5}) {
-    EXPECT_NEAR(share_of_second(traits, reference_N, reference_N), 0.5, 0.011);
-    // Slightly less than 0.75, because the larger force has larger noise.
-    EXPECT_NEAR(share_of_second(traits, reference_N, reference_N + traits.jnd.at(reference_N)), 0.75, 0.017);
-  }
-}
-
-TEST(SimulatedSubject, HasBiasAndLapses) {
-  EXPECT_NEAR(share_of_second({{0.1, 0.0}, 1.0, 0.0}, 1.0, 1.0), 0.75, 0.011) << "one JND for the second";
-  EXPECT_NEAR(share_of_second({{0.01, 0.0}, 0.0, 0.05}, 1.0, 2.0), 0.95, 0.011);
-}
-
-TEST(SimulatedSubject, GivesAllAnswersOfAPlanAndRepeatsThem) {
-  const auto one = simulated_answers({"S01"}, {}, 7);
-  EXPECT_EQ(one.size(), 328u);
-  EXPECT_EQ(one, simulated_answers({"S01"}, {}, 7));
-  EXPECT_NE(one, simulated_answers({"S01"}, {}, 8));
 }
 
 }  // namespace

@@ -54,39 +54,6 @@ TEST(StudyPlan, PresentsEachPairTenTimesBalancedForOrder) {
   }
 }
 
-TEST(StudyPlan, TheOrderDependsOnTheSubjectOnly) {
-  EXPECT_EQ(plan_study("S01", nullptr), plan_study("S01", nullptr));
-  EXPECT_NE(study_trials("S01"), study_trials("S02"));
-  const auto one = plan_study("S01", nullptr), other = plan_study("S02", nullptr);
-  ASSERT_TRUE(one[7].training && !one[8].training);
-  EXPECT_FALSE(std::equal(one.begin(), one.begin() + 8, other.begin())) << "the training, too";
-}
-
-TEST(StudyPlan, DiscriminationsAreBalancedInEveryBlock) {
-  StrokePair strokes;
-  strokes.reference_mean_N = 1.2;
-  strokes.comparison_mean_N = 1.3;
-  for (const char* code : {"S01", "S02", "AB1234"}) {
-    const std::vector<StudyTrial> trials = study_trials(code, &strokes);
-    ASSERT_EQ(trials.size(), kDiscriminationTrials);
-    for (std::size_t from = 0; from < trials.size(); from += kDiscriminationBlock) {
-      const auto block = trials.begin() + static_cast<std::ptrdiff_t>(from);
-      EXPECT_EQ(std::count_if(block, block + kDiscriminationBlock,
-                              [](const StudyTrial& trial) { return trial.comparison_first; }),
-                static_cast<std::ptrdiff_t>(kDiscriminationBlock / 2));
-    }
-    EXPECT_EQ(trials[7].reference_N, 1.2);
-    EXPECT_EQ(trials[7].comparison_N, 1.3);
-    EXPECT_EQ(trials, study_trials(code, &strokes));
-  }
-  EXPECT_NE(study_trials("S01", &strokes), study_trials("S02", &strokes));
-  const auto plan = plan_study("S01", &strokes);
-  EXPECT_EQ(plan[3].comparison_N, 0.6);
-  EXPECT_TRUE(plan[3].training);
-  EXPECT_EQ(plan[3].number, 4u);
-  EXPECT_EQ(plan[4].number, 1u);
-}
-
 using test::has_parts;
 using test::read_text;
 
@@ -162,12 +129,6 @@ TEST_F(StudyFileTest, OtherStudiesAndOtherFilesAreRefusedAndKept) {
   const std::string notes = folder_.with_file("notes.csv", "time_s,position_m\n");
   EXPECT_TRUE(has_parts(StudyFile::open(notes, kHeader), {notes + ":1:1:", "time_s,position_m", "# palpate-study 1"}));
   EXPECT_EQ(read_text(notes), "time_s,position_m\n");
-}
-
-TEST_F(StudyFileTest, ACommaInTheNameOfADeviceBreaksNoRow) {
-  auto file = StudyFile::open(path_, {"S01", nullptr, "bridge:a,b", true});
-  ASSERT_TRUE(file.ok() && file->consent("").ok() && file->append(answer_to(0)).ok());
-  EXPECT_EQ(test::must(read_study(path_)).records.at(0).device, "bridge:a;b");
 }
 
 TEST_F(StudyFileTest, AFullDiskLosesNothingThatWasAnswered) {
@@ -267,13 +228,6 @@ TEST(StudyFiles, AreOfDifferentSubjectsAndTheSameForces) {
   EXPECT_TRUE(has_parts(checked(strokes, {"S02", test::example_strokes(0.8)}), {"S02", "S01", "separate commands"}));
 }
 
-TEST(StudyReader, RefusesRowsAfterTheLastTrial) {
-  std::string text = study_header_text(kHeader, "");
-  for (const StudyTrial& trial : plan_study("S01", nullptr)) text += study_row({trial}, false);
-  EXPECT_EQ(complaint_of(text), "accepted");
-  EXPECT_TRUE(has_parts(complaint_of(text + kRow), {"S01.csv:335:1: ", "training", "expected \"\""}));
-}
-
 TEST(StudyReader, ReadsOrRefusesEveryTruncation) {
   for (const std::string& good : {kGood, kGoodStrokes}) {
     for (std::size_t length = 0; length < good.size(); ++length) {
@@ -327,45 +281,6 @@ TEST(PrepareStrokes, TwoModelsDifferByTheirStiffness) {
   EXPECT_EQ((*same)->max_over_jnd, 0.0);
   EXPECT_EQ((*same)->reference_N, (*same)->comparison_N);
   EXPECT_NE((*same)->checksum, strokes->checksum);
-}
-
-TEST(PrepareStrokes, DoesNotDependOnTheRate) {
-  const JndLine jnd;
-  const auto slow = strokes_of(presses({0.01}, 0.0, 200.0), spring(100.0), spring(80.0), jnd);
-  const auto fast = strokes_of(presses({0.01}, 0.0, 4000.0), spring(100.0), spring(80.0), jnd);
-  ASSERT_TRUE(slow.ok() && fast.ok());
-  EXPECT_NEAR((*slow)->max_over_jnd, (*fast)->max_over_jnd, 0.01);
-  EXPECT_NEAR((*slow)->reference_mean_N, (*fast)->reference_mean_N, 0.02);
-}
-
-TEST(PrepareStrokes, ExcludesStrokesBeyondTheLimits) {
-  const JndLine jnd;
-  const auto weak = test::must(strokes_of(presses({0.06, 0.01}, 0.0), spring(100.0), spring(80.0), jnd));
-  for (std::uint32_t i = 0; i < kInterval_ticks; ++i) {
-    ASSERT_LE(weak->reference_N[i] * interval_share(i), 0.95 * kLargestStudyForce_N);
-  }
-  EXPECT_TRUE(test::has_parts(strokes_of(presses({-0.01}, 0.0), spring(100.0), spring(80.0), jnd),
-                              {"1.1 s", "3.8 N", "2.5 N", "90 N/s", "spring", "; "}));
-}
-
-TEST(PrepareStrokes, CanBePresentedAsTheyAre) {
-  const auto strokes = test::must(strokes_of(presses({0.03, 0.035}, 0.0), spring(100.0), spring(95.0), {}));
-  const test::TemporaryFolder folder;
-  const auto session = test::must(test::session_at(folder.file("S01.csv"), {"S01", strokes}));
-  session->accept_consent("");
-  EXPECT_EQ(test::answer_trials(*session, 1000, test::truly_like), 104u);
-  for (const StudyRecord& record : session->file().records()) {
-    EXPECT_FALSE(record.limited);
-    EXPECT_EQ(record.worst_N, 0.0);
-  }
-}
-
-TEST(PrepareStrokes, RefusesOtherNumbersOfModels) {
-  EXPECT_TRUE(
-      test::has_parts(prepare_strokes("silicone_block", {"greedy", "random", "direct"}, ""), {"found 3 models"}));
-  EXPECT_TRUE(test::has_parts(prepare_strokes("silicone_block", {"best"}, ""), {"\"best\""}));
-  EXPECT_TRUE(test::has_parts(prepare_strokes("jnd_study", {}, ""), {"has no virtual material"}));
-  EXPECT_TRUE(test::has_parts(prepare_strokes("silicone_block", {}, "/none/rec.csv"), {"/none/rec.csv"}));
 }
 
 }  // namespace

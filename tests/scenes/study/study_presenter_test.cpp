@@ -12,8 +12,6 @@
 namespace palpate {
 namespace {
 
-constexpr std::uint32_t kPresentation_ticks = kLeadIn_ticks + 2 * kInterval_ticks + kPause_ticks;
-
 Stimuli stimuli(double first_N, double second_N) { return {Stimulus{}, Stimulus{first_N}, Stimulus{second_N}}; }
 
 // The forces of `ticks` ticks. The rendered force is `gain` times each.
@@ -61,15 +59,6 @@ TEST(StudyPresenter, PresentsTheStimuliExactToTheTick) {
     EXPECT_NEAR(state.worst_N, 0.0, 1e-12);
     EXPECT_FALSE(state.limited) << "the ramps stay below the limiter's slew";
   }
-}
-
-TEST(StudyPresenter, RecordsTheRenderedForces) {
-  StudyPresenter presenter;
-  presenter.present(stimuli(1.0, 2.0));
-  run(presenter, kPresentation_ticks + 2, 0.9);
-  EXPECT_NEAR(presenter.newest().rendered_N[1], 0.9, 1e-12);
-  EXPECT_NEAR(presenter.newest().rendered_N[2], 1.8, 1e-12);
-  EXPECT_NEAR(presenter.newest().worst_N, 0.2, 1e-12);
 }
 
 TEST(StudyPresenter, LimitsForcesThatAreTooLarge) {

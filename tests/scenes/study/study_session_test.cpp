@@ -91,52 +91,6 @@ TEST_F(StudySessionTest, RunsFromConsentToTheEnd) {
   }
 }
 
-TEST_F(StudySessionTest, OnlyTheTrainingHasFeedback) {
-  const auto session = begun();
-  EXPECT_FALSE(session->view().was_correct.has_value());
-  answer_trials(*session, 1, truly_larger);
-  EXPECT_EQ(session->view().was_correct, true);
-  answer_trials(*session, 1, [](const StudyTrial& trial) { return !truly_larger(trial); });
-  EXPECT_EQ(session->view().was_correct, false);
-  answer_trials(*session, 6, truly_larger);
-  EXPECT_EQ(session->state(), StudyState::ready);
-  EXPECT_FALSE(session->view().training);
-  answer_trials(*session, 1, truly_larger);
-  EXPECT_FALSE(session->view().was_correct.has_value()) << "the study itself tells nothing";
-}
-
-TEST_F(StudySessionTest, ShowsWhichForceIsPresentedAndCountsTheResponse) {
-  for (const bool strokes : {false, true}) {
-    std::filesystem::remove(path_);
-    const auto session = begun(strokes ? test::discrimination_header(0.8) : StudyHeader{"S01"});
-    session->proceed();
-    std::vector<int> shown;
-    double rendered_N = 0.0;
-    for (int i = 0; session->state() == StudyState::presenting && i < 10000; ++i) {
-      rendered_N = session->next_force_N(rendered_N);
-      session->update();
-      if (shown.empty() || session->view().interval != shown.back()) shown.push_back(session->view().interval);
-    }
-    EXPECT_EQ(shown, strokes ? (std::vector<int>{-1, 0, -1, 1, -1, 2, -1}) : (std::vector<int>{-1, 1, -1, 2, -1}));
-    for (int i = 0; i < 730; ++i) session->next_force_N(0.0);
-    session->answer(true);
-    EXPECT_EQ(records_of(session).front().response_ms, 731u);
-  }
-}
-
-TEST_F(StudySessionTest, BreaksLastTheirTime) {
-  const auto session = begun({"S01"}, 500);
-  answer_trials(*session, 8 + 64, truly_larger);
-  ASSERT_EQ(session->state(), StudyState::rest);
-  EXPECT_EQ(session->view().rest_ticks_left, 500u);
-  for (int i = 0; i < 499; ++i) session->next_force_N(0.0);
-  session->proceed();
-  EXPECT_EQ(session->state(), StudyState::rest);
-  session->next_force_N(0.0);
-  session->proceed();
-  EXPECT_EQ(session->state(), StudyState::presenting);
-}
-
 TEST_F(StudySessionTest, AsksAgainForAnAnswerThatCouldNotBeStored) {
   const auto session = begun();
   answer_trials(*session, 3, truly_larger);
@@ -149,13 +103,6 @@ TEST_F(StudySessionTest, AsksAgainForAnAnswerThatCouldNotBeStored) {
   session->answer(true);
   EXPECT_EQ(session->state(), StudyState::presenting);
   EXPECT_EQ(records_of(session).size(), 4u);
-}
-
-TEST_F(StudySessionTest, ConsentCountsOnceItIsStored) {
-  const auto session = test::must(test::session_at(folder_.file("none/S01.csv")));
-  session->accept_consent("");
-  EXPECT_EQ(session->state(), StudyState::consent);
-  EXPECT_TRUE(test::has_parts(session->view().message, {"does not exist"}));
 }
 
 TEST_F(StudySessionTest, AbortWorksInEveryState) {

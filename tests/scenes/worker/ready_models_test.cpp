@@ -5,7 +5,6 @@
 #include <filesystem>
 
 #include "scenes/worker/model_worker.h"
-#include "tests/support/example_model.h"
 #include "tests/support/message_parts.h"
 #include "tests/support/temporary_folder.h"
 
