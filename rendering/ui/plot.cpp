@@ -131,7 +131,7 @@ void LivePlot::line(const std::vector<ImVec2>& all, ImU32 colour, float thicknes
   if (points.size() > 1) list_->AddPolyline(points.data(), static_cast<int>(points.size()), colour, 0, whole);
 }
 
-// Cuts the line at the x where dashes begin and end. A vertical piece is drawn or left out as a whole.
+// Cuts the line at the x where dashes begin and end. A steep piece is drawn as a whole, so that a peak is no dot.
 void LivePlot::dashed(const std::vector<ImVec2>& points, ImU32 colour, float thickness, const Dashes& dashes,
                       float start_px) const {
   const float period = dashes.dash + dashes.gap;
@@ -144,7 +144,7 @@ void LivePlot::dashed(const std::vector<ImVec2>& points, ImU32 colour, float thi
     const ImVec2 to = points[i + 1];
     for (ImVec2 at = points[i];;) {
       const float phase = at.x - start_px - period * std::floor((at.x - start_px) / period);
-      const bool drawn = phase < dashes.dash;
+      const bool drawn = phase < dashes.dash || std::abs(to.y - at.y) > 4.0F * (to.x - at.x);
       // A little beyond the border, so that every step gets on.
       const float border = at.x + (drawn ? dashes.dash : period) - phase + 0.01F;
       const bool last = border >= to.x;
