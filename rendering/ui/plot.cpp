@@ -144,9 +144,9 @@ void LivePlot::dashed(const std::vector<ImVec2>& points, ImU32 colour, float thi
     const ImVec2 to = points[i + 1];
     for (ImVec2 at = points[i];;) {
       const float phase = at.x - start_px - period * std::floor((at.x - start_px) / period);
-      const bool drawn = phase < dashes.dash || std::abs(to.y - at.y) > 4.0F * (to.x - at.x);
+      const bool in_dash = phase < dashes.dash, drawn = in_dash || std::abs(to.y - at.y) > 4.0F * (to.x - at.x);
       // A little beyond the border, so that every step gets on.
-      const float border = at.x + (drawn ? dashes.dash : period) - phase + 0.01F;
+      const float border = at.x + (in_dash ? dashes.dash : period) - phase + 0.01F;
       const bool last = border >= to.x;
       const float share = last ? 1.0F : (border - at.x) / (to.x - at.x);
       const ImVec2 next = last ? to : ImVec2(border, at.y + share * (to.y - at.y));
