@@ -59,7 +59,7 @@ class IdealLoop(threading.Thread):
         return sorted(self.late_us)[int(0.999 * (len(self.late_us) - 1))]
 
 
-def run(program, blocks, seconds, options, display):
+def run(program, seconds, options, display):
     with tempfile.TemporaryDirectory() as folder:
         stats = pathlib.Path(folder, "stats.json")
         environment = dict(os.environ, DISPLAY=display, XDG_CONFIG_HOME=f"{folder}/config",
@@ -87,14 +87,14 @@ def run(program, blocks, seconds, options, display):
     return figures, parts
 
 
-def row(program, blocks, options, display):
-    first, first_s = run(program, blocks, options.seconds / 4, options, display)
-    both, both_s = run(program, blocks, options.seconds, options, display)
+def row(program, options, display):
+    first, first_s = run(program, options.seconds / 4, options, display)
+    both, both_s = run(program, options.seconds, options, display)
     graphics = both["graphics"]
     frames = graphics["frames"] - first["graphics"]["frames"]
     cost = [1e3 * (both_s[part] - first_s[part]) / max(frames, 1) for part in both_s]
     haptics = both["haptics"]
-    values = [blocks, program, frames, f"{graphics['fps']:.1f}", f"{graphics['frame_ms']['p50']:.1f}",
+    values = [program, frames, f"{graphics['fps']:.1f}", f"{graphics['frame_ms']['p50']:.1f}",
               f"{graphics['frame_ms']['p99']:.1f}",
               *(f"{ms:.2f}" for ms in cost), f"{haptics['lateness_us']['p99_9']:.0f}", f"{both['ideal_us']:.0f}",
               haptics["missed_deadlines"]]
@@ -105,8 +105,6 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("programs", nargs="+")
     parser.add_argument("--models", nargs="*", default=[], help="files or methods in place of the scene's own")
-    parser.add_argument("--blocks", type=int, nargs="*", default=[5, 1],
-                        help="1, 2, or more: a block of each model and of the truth")
     parser.add_argument("--size", default="1280x720", help="of the window")
     parser.add_argument("--seconds", type=float, default=20.0)
     parser.add_argument("--rounds", type=int, default=2)
@@ -117,12 +115,11 @@ def main():
     while not os.path.exists(f"/tmp/.X11-unix/X{number}"):
         time.sleep(0.05)
     try:
-        print("blocks,program,frames,fps,frame_ms_p50,frame_ms_p99,main_processor_ms,driver_processor_ms,"
+        print("program,frames,fps,frame_ms_p50,frame_ms_p99,main_processor_ms,driver_processor_ms,"
               "whole_processor_ms,lateness_us_p99_9,ideal_loop_us_p99_9,missed_deadlines")
         for _ in range(options.rounds):
-            for blocks in options.blocks:
-                for program in options.programs:
-                    print(row(program, blocks, options, f":{number}"), flush=True)
+            for program in options.programs:
+                print(row(program, options, f":{number}"), flush=True)
     finally:
         server.terminate()
         server.wait()

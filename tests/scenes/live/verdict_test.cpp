@@ -18,7 +18,7 @@ TEST(Verdict, ComparesTheRecommendedModelWithTheBestOfTheOtherKind) {
       "");
   EXPECT_EQ(verdict.chosen, 2u);
   EXPECT_EQ(verdict.headline,
-            "Use trend: 99 % of the test is within one JND, a tick takes 0.39 us. greedy: 80 %, 1.6 times faster.");
+            "Use trend: 99.5 % of the test is within one JND, a tick takes 0.39 us. greedy: 80 %, 1.6 times faster.");
   EXPECT_EQ(verdict.detail, "");
 }
 
@@ -26,7 +26,7 @@ TEST(Verdict, OfEquallyGoodModelsTheFasterOneComesFirst) {
   const Verdict verdict = judge({model(4, "greedy", true, 0.49, 240.0), model(7, "trend", false, 0.4, 390.0)}, "");
   EXPECT_EQ(verdict.chosen, 4u);
   EXPECT_EQ(verdict.headline,
-            "Use greedy: 99 % of the test is within one JND, a tick takes 0.24 us. trend: 99 %, 1.6 times slower.");
+            "Use greedy: 99.5 % of the test is within one JND, a tick takes 0.24 us. trend: 99.5 %, 1.6 times slower.");
   EXPECT_EQ(verdict.detail, " trend has a lower 99 % error, by too little to count, and is slower.");
 }
 
