@@ -98,7 +98,7 @@ TEST(Evaluate, TheSamePreloadElsewhereIsAColumnOfItsOwn) {
   EXPECT_EQ(test::must(evaluate(recording, models, request)).models[0].beginning_moved.summary().samples, 0u);
   request.move_beginning = true;
   const auto found = test::must(evaluate(recording, models, request));
-  EXPECT_EQ(found.models[0].beginning_m, 10e-3);
+  EXPECT_DOUBLE_EQ(found.models[0].beginning_m, 10e-3);
   for (RecordingRow& row : recording.rows) row.position_m -= 10e-3;
   const auto there = test::must(evaluate(recording, models));
   EXPECT_EQ(found.models[0].beginning_moved.summary().samples, there.models[0].as_recorded.summary().samples);
