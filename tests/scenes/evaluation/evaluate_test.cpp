@@ -82,7 +82,7 @@ TEST(Evaluate, RecordingsArePooledWithASurfaceEach) {
 // A recording that begins under a preload of 1 N as the training did, 10 mm from there.
 TEST(Evaluate, TheSamePreloadElsewhereIsAColumnOfItsOwn) {
   ModelData data = test::example_models().front();
-  data.ends = {{-9e-3, -5e-3, std::vector<double>(memory_size(data.features)), 1.05}};
+  data.ends = {{-9e-3, -50e-3, std::vector<double>(memory_size(data.features)), 1.05}};
   const std::vector<EvaluatedModel> models{{std::make_shared<const FittedModel>(data), data.jnd}};
   Recording recording = test::example_recording(800, 1000.0);
   for (RecordingRow& row : recording.rows) row.position_m += 1e-3 - recording.rows.front().position_m;
@@ -92,13 +92,13 @@ TEST(Evaluate, TheSamePreloadElsewhereIsAColumnOfItsOwn) {
   };
   EXPECT_DOUBLE_EQ(offset_m(1.0), 10e-3);
   EXPECT_EQ(offset_m(0.1), 0.0) << "no preload";
-  EXPECT_EQ(offset_m(1.5), 0.0) << "another preload: the JND is 0.16 N";
+  EXPECT_EQ(offset_m(1.6), 0.0) << "another preload: three JND are 0.5 N";
   recording.rows.front().force_N = 1.0;
   EvaluationRequest request;
   EXPECT_EQ(test::must(evaluate(recording, models, request)).models[0].beginning_moved.summary().samples, 0u);
   request.move_beginning = true;
   const auto found = test::must(evaluate(recording, models, request));
-  EXPECT_EQ(found.models[0].beginning_m, 10e-3);
+  EXPECT_DOUBLE_EQ(found.models[0].beginning_m, 10e-3);
   for (RecordingRow& row : recording.rows) row.position_m -= 10e-3;
   const auto there = test::must(evaluate(recording, models));
   EXPECT_EQ(found.models[0].beginning_moved.summary().samples, there.models[0].as_recorded.summary().samples);
