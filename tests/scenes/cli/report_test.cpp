@@ -227,6 +227,22 @@ TEST_F(ReportVerb, AnOffsetOfForceAndSurfaceChangesNoFigure) {
   }
 }
 
+TEST_F(ReportVerb, AFolderIsReportedFileByFileAndContinued) {
+  test::TemporaryFolder folder;
+  fs::create_directory(folder.file("in"));
+  for (const int seed : {1, 2}) fs::copy(recording(seed), folder.file("in"));
+  const std::string all = folder.file("all");
+  const auto first = report({"--train", folder.file("in"), "--out", all});
+  ASSERT_EQ(first.exit_code, 0) << first.err;
+  EXPECT_TRUE(test::has_parts(first.out, {"2 of 2 recordings are done, 0 of them before", "reports.csv"}));
+  const std::string table = test::read_text(all + "/reports.csv");
+  EXPECT_TRUE(test::has_parts(table, {"recording,recommended,no force,voxel,random-100,", "\nr1,", "\nr2,"}));
+  fs::remove_all(all + "/r2");
+  const auto again = report({"--train", folder.file("in"), "--out", all});
+  EXPECT_TRUE(test::has_parts(again.out, {"2 of 2 recordings are done, 1 of them before"})) << again.err;
+  EXPECT_TRUE(fs::exists(all + "/r2/index.html"));
+}
+
 TEST_F(ReportVerb, EveryFigureCanBeDrawnAgainFromItsFolder) {
   for (const char* name : {"speed_error", "worst_stretch", "error_by_force"}) {
     const std::string svg = out() + "/figures/" + name + ".svg";
