@@ -158,9 +158,53 @@ double white_force_noise_N(const PreparedRecording& prepared) {
   return prepared.force_noise_N / kQuietShare;
 }
 
+namespace {
+
+constexpr std::size_t kLeastRows = 10;  // of a median
+
+// The free air of a recording whose force zero drifts: that of the forces from which those of the outermost tenth of
+// each time that the tool is out are subtracted, as medians of an eighth of their rows, interpolated over time.
+FreeAir air_of_levelled(const Recording& recording) {
+  constexpr std::size_t kParts = 8;
+  Recording level = recording;
+  const auto& rows = recording.rows;
+  const auto [low, high] = std::ranges::minmax(rows, {}, &RecordingRow::position_m);
+  const double middle_m = 0.5 * (low.position_m + high.position_m);
+  std::vector<std::pair<double, double>> points;  // s, N
+  for (std::size_t begin = 0, end; begin < rows.size(); begin = end + 1) {
+    double outermost_m = middle_m;
+    for (end = begin; end < rows.size() && rows[end].position_m < middle_m; ++end)
+      outermost_m = std::min(outermost_m, rows[end].position_m);
+    std::vector<RecordingRow> out;
+    for (std::size_t i = begin; i < end; ++i)
+      if (rows[i].position_m < outermost_m + 0.1 * (middle_m - outermost_m)) out.push_back(rows[i]);
+    const std::size_t parts = std::min(kParts, out.size() / kLeastRows);
+    for (std::size_t k = 0; k < parts; ++k) {
+      std::vector<double> forces_N;
+      const std::size_t first = k * out.size() / parts, last = (k + 1) * out.size() / parts;
+      for (std::size_t i = first; i < last; ++i) forces_N.push_back(out[i].force_N);
+      points.emplace_back(out[(first + last) / 2].time_s, median_of(std::move(forces_N)));
+    }
+  }
+  if (points.size() < 3) return {};
+  std::size_t after = 1;
+  for (RecordingRow& row : level.rows) {
+    while (after + 1 < points.size() && points[after].first < row.time_s) ++after;
+    const auto& [from_s, from_N] = points[after - 1];
+    const auto& [to_s, to_N] = points[after];
+    const double share = std::clamp((row.time_s - from_s) / std::max(to_s - from_s, 1e-9), 0.0, 1.0);
+    row.force_N -= from_N + share * (to_N - from_N);
+  }
+  return prepare_recording(std::move(level))->surface.air;
+}
+
+}  // namespace
+
 ZeroDrift find_zero_drift(const PreparedRecording& prepared) {
-  constexpr std::size_t kGroups = 24, kLeastRows = 10;
-  const FreeAir& air = prepared.surface.air;
+  constexpr std::size_t kGroups = 24;
+  FreeAir air = air_of_levelled(prepared.recording);
+  if (const FreeAir& own = prepared.surface.air; own.found && (!air.found || own.inner_end_m > air.inner_end_m))
+    air = own;
   std::vector<RecordingRow> rows;
   for (const RecordingRow& row : prepared.recording.rows)
     if (air.found && row.position_m < air.inner_end_m) rows.push_back(row);
