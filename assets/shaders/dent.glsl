@@ -1,4 +1,4 @@
-// Depth of the surface at the distance `r` from the ball's axis, and its slope (rendering/picture/shapes.h):
+// Depth of the surface at the distance `r` from the ball's axis, and its slope (rendering/picture/gpu.h):
 //   r <= a:  u = d - R + sqrt(R^2 - r^2)                                            the ball
 //   r >  a:  u = u_a (2 / pi) ((2 - x^2) asin(1 / x) + sqrt(x^2 - 1)), x = r / a    the half-space beside it
 // The depth decreases to 0 towards the rim, so that the sides do not move.

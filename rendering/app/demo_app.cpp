@@ -38,8 +38,6 @@ Status DemoApp::set_up(const DemoRequest& request) {
   if (request.exhibit && request_.models.empty()) request_.models = exhibit_models();
   if (const auto folder = data_folder()) request_.data_folder = *folder;
   files_.use_settings(view_.exhibit.on ? "" : request.settings_file);
-  if (!view_.settings.line_up.empty() && request_.models.empty() && !request_.line_up.empty())
-    request_.line_up = view_.settings.line_up;
   first_device_ = request_.device.rfind("replay:", 0) == 0 ? "auto" : request_.device;
   auto session = LiveSession::open(request_);
   if (!session) return session.error();
@@ -56,9 +54,10 @@ Status DemoApp::set_up(const DemoRequest& request) {
   auto blocks = BlockView::create(session_->scene(), view_.exhibit.on ? 1.0F : kDeeperDents);
   if (!blocks) return blocks.error();
   blocks_ = std::move(*blocks);
-  blocks_->camera().turn(view_.settings.camera);
+  blocks_->in_one_row(view_.exhibit.on);
   if (Status status = set_up_exhibit(request.exhibit_times); !status) return status;
   commands_ = make_commands();
+  actions_ = make_actions();
   listen();
   if (find_font().empty()) notify("no font found; install fonts-dejavu-core", true);
   for (const std::string& recording : request.recordings) files_.open_recording(recording);
@@ -81,7 +80,6 @@ void DemoApp::listen() {
   glfwSetMouseButtonCallback(handle, [](GLFWwindow* from, int, int, int) { app_of(from).note_input(); });
   glfwSetScrollCallback(handle, [](GLFWwindow* from, double, double) { app_of(from).note_input(); });
   glfwSetCharCallback(handle, [](GLFWwindow* from, unsigned) { app_of(from).note_input(); });
-  glfwSetWindowRefreshCallback(handle, [](GLFWwindow* from) { app_of(from).everything_ = true; });
   // After these callbacks: ImGui installs its own and calls them.
   ui_ = std::make_unique<UiContext>(handle);
 }
@@ -96,7 +94,7 @@ std::string DemoApp::end() {
 void DemoApp::finish() {
   if (window_ != nullptr) glfwHideWindow(window_->handle());
   if (session_ == nullptr) return;
-  if (blocks_ != nullptr) files_.save_settings(*session_, blocks_->camera().turned());
+  files_.save_settings();
   session_->close();
   files_.finish();
 }
@@ -138,11 +136,17 @@ void DemoApp::frame() {
   look();
   blocks_->camera().advance(static_cast<float>(now_s - frame_began_s_));
   frame_began_s_ = now_s;
-  draw(needs_texts(now_s));
+  if (window_->is_visible()) draw(needs_texts(now_s));
   handle_keys();
   // The session changes between two frames, because drawing refers to it.
   if (next_) reopen(*std::exchange(next_, std::nullopt));
-  window_->show_frame(changed_);
+  const std::string picture = std::exchange(picture_, "");
+  if (picture.empty() || !window_->is_visible()) {
+    window_->show_frame();
+  } else {
+    const Status saved = window_->save_frame(picture, false);
+    notify(saved ? "saved " + picture : saved.error().message, !saved);
+  }
   const double shown_s = steady_now_s();
   view_.frames.add(shown_s - last_frame_s_);
   last_frame_s_ = shown_s;
@@ -211,7 +215,8 @@ void DemoApp::reopen(const SessionRequest& request) {
   SessionRequest without_device = request_;
   without_device.device = "mouse";
   const SessionRequest plain{.device = "mouse", .realtime = request_.realtime, .data_folder = request_.data_folder};
-  for (const SessionRequest& wanted : {request, request_, without_device, plain}) {
+  for (SessionRequest wanted : {request, request_, without_device, plain}) {
+    wanted.known_device = wanted.device == request_.device;
     auto session = LiveSession::open(wanted);
     if (session) {
       request_ = wanted;
@@ -225,11 +230,50 @@ void DemoApp::reopen(const SessionRequest& request) {
   outcome_ = {};
   auto blocks = BlockView::create(session_->scene());
   if (blocks) blocks_ = std::move(*blocks);
-  blocks_->camera().turn(view_.settings.camera);
   curves_ = {};  // without those of the old session
+  stroke_.reset();
   view_.time = {.zero_s = steady_now_s()};
-  view_.scales_force = false;
+  view_.scales_force = view_.material = false;
+  view_.worst.reset();
+  view_.second = kReferenceBlock;
   look();
+}
+
+WindowActions DemoApp::make_actions() {
+  WindowActions actions;
+  actions.commands = &commands_;
+  actions.choices = [this] { return choices(); };
+  actions.select = [this](std::size_t slot) {
+    view_.material = false;
+    (void)session_->models().select(slot);
+  };
+  actions.remove = [this](std::size_t slot) { session_->remove(slot); };
+  actions.treat_as_this_material = [this](std::size_t slot) { session_->treat_as_this_material(slot); };
+  actions.refit = [this](std::size_t slot, int centres) { session_->models().refit(slot, centres); };
+  actions.add_model = [this](const std::string& name) { session_->add_model(name); };
+  actions.worst = [this](std::size_t slot) { use_worst(slot); };
+  actions.scale = [this](const ForceScale& scale) { session_->controls().scale = scale; };
+  actions.zero_device = [this] { session_->start_zeroing(); };
+  actions.seek = [this](double at_s) { session_->replay()->seek(at_s); };
+  actions.set_speed = [this](double speed) { session_->replay()->set_speed(speed); };
+  actions.move_surface = [this](bool moved) { session_->move_surface(moved); };
+  actions.use_scene = [this](const std::string& scene) { use_material(scene, {}, first_device_); };
+  actions.open = [this](const std::string& path) { drop_files({path}); };
+  actions.use_device = [this](const std::string& device) {
+    first_device_ = device;
+    use_device(device);
+  };
+  actions.use_recording_roles = [this] { use_recording_roles(); };
+  actions.save = [this](int what) { save(what); };
+  actions.lift_tool = [this] { lift_tool(); };
+  actions.hold_tool = [this] {
+    if (session_->tool_input() != nullptr) session_->tool_input()->nudge(0.0, steady_now_s());
+  };
+  actions.release_tool = [this] {
+    if (session_->tool_input() != nullptr) session_->tool_input()->release();
+  };
+  actions.reset_figures = [this] { session_->reset_figures(); };
+  return actions;
 }
 
 Status DemoApp::set_up_exhibit(const ExhibitTimes& times) {

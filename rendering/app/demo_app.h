@@ -1,26 +1,99 @@
 // The window program without its command line: a session, a window, and the work of a frame. demo_frame.cpp draws,
-// demo_input.cpp has keys and mouse, demo_commands.cpp the table of commands, demo_files.h files.
+// demo_input.cpp has keys and mouse, demo_commands.cpp the table of commands, demo_files.cpp files.
 // Thread guarantee: main thread only.
 #pragma once
 
+#include <deque>
+#include <functional>
+#include <future>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "engine/base/result.h"
-#include "rendering/app/demo_files.h"
 #include "rendering/app/window.h"
 #include "rendering/panels/exhibit.h"
 #include "rendering/panels/panel.h"
-#include "rendering/panels/scene_overlay.h"
-#include "rendering/panels/view_state.h"
 #include "rendering/picture/block_view.h"
-#include "rendering/ui/ui_context.h"
-#include "rendering/ui/ui_style.h"
+#include "rendering/ui/ui.h"
 #include "scenes/live/live_session.h"
+#include "scenes/live/session_recorder.h"
+#include "scenes/plot/plot.h"
 
 namespace palpate {
+
+// The settings that the window keeps between runs, a JSON file in the user's configuration folder; a missing file gives
+// the defaults. Errors: the file has no settings.
+Result<Settings> read_settings(const std::string& path);
+Status write_settings(const std::string& path, const Settings& settings);
+
+// The JSON text of --stats: haptics, graphics, start (seconds until the comparison stood), models, verdict, faults,
+// scene, device, reference.
+std::string stats_text(const LiveSession& session, const WindowView& shown, const FrameFigures& frames);
+
+// The curves of the panel as a figure (gnuplot) and as a table (CSV). `source`: scene and device.
+// Two panels: force with the JND band, and difference in JND. Every point is the tick of a column (CurveColumn::tick).
+Plot curve_plot(const CurveColumns& columns, const WindowView& shown, const CurveTime& time, const std::string& source);
+
+// Every tick that the curves show, with the columns time_s,depth_m,reference_N,rendered_N and "<name>_N" for each
+// model. A missing force is an empty field.
+std::string curve_csv(const WindowView& shown, const CurveTime& time, const std::string& source);
+
+// Does this work and shows its results as notices.
+class DemoFiles {
+ public:
+  using Notify = std::function<void(std::string text, bool problem)>;
+  using Read = std::function<Result<ConvertedRecording>(const std::string& path, const std::string& folder)>;
+  // `view` outlives this. `notify` shows a notice. `read` is called in a background thread and may block.
+  DemoFiles(ViewState& view, Notify notify, Read read = convert_recording)
+      : view_(view), notify_(std::move(notify)), read_(std::move(read)) {}
+  ~DemoFiles() { finish(); }
+  // Waits for the work that runs, and completes the saves that wait.
+  void finish();
+
+  // Reads the settings from `file`; empty: settings are neither read nor saved.
+  void use_settings(const std::string& file);
+  void save_settings();
+
+  // Call it once a frame: processes finished background work and recordings.
+  void update(const LiveSession& session);
+  // Calls `open_recording` for a file with an extension other than .json; loads any other file as a model.
+  void open(const std::string& path, LiveSession& session);
+  // Reads a recording or another program's table in the background, then asks whether to train or to test on it.
+  void open_recording(const std::string& path);
+  void record(LiveSession& session);
+  void save_curves(const LiveSession& session, const WindowView& shown, const CurveColumns& columns);
+  void save_table(const WindowView& shown);
+  // A path for a picture in the user's data folder; empty, after a notice, where there is no folder.
+  std::string picture_path() { return new_path("/picture-%Y%m%d-%H%M%S", ".png"); }
+  void save_model(const LiveSession& session);
+  void look_for_devices();
+  // Appends to the log file of the exhibit.
+  static void write_to_log(const std::string& text);
+
+ private:
+  // The second part of a task: `update` calls it when the work in the background is done.
+  using Finish = std::function<void()>;
+  struct Task {
+    std::function<Finish()> work;
+    bool saves = false;  // it is completed even if the window closes
+  };
+  void remember(const std::string& path);  // adds it to the recent files
+  // A path in the user's data folder, with a name made of the time and a number; empty, after a notice, where there is
+  // no folder.
+  std::string new_path(const char* name, const char* extension);
+
+  ViewState& view_;
+  Notify notify_;
+  Read read_;
+  std::string settings_file_;
+  int saved_ = 0;             // number of the newest path of `new_path`: two may be of the same second
+  std::deque<Task> waiting_;  // `update` starts one after the other in the background
+  std::future<Finish> running_;
+  bool searching_ = false;  // a search for devices waits or runs
+  std::string recording_;   // the file that is being recorded; empty: none
+};
 
 struct DemoRequest {
   SessionRequest session;
@@ -88,24 +161,32 @@ class DemoApp {
   void run_held(const std::vector<KeyPress>& pressed, bool in_list) const;
   void run_pressed(const KeyPress& press, bool in_list) const;
   bool runs(const WindowCommand& command, int key, bool in_list) const;
+  bool press_focused(const KeyPress& press);
   void handle_exhibit_key(const KeyPress& press);
   bool is_down(int key) const;
   std::vector<int> tapped() const;
   void drive_tool();
   void handle_mouse();
-  bool follow_mouse(const ImVec2& mouse);
-  void move_tool_to(const ImVec2& mouse);
+  void lift_tool();
+  void begin_stroke(const ImVec2& mouse);
+  void follow_stroke();
+  void hover_block(const ImVec2& mouse);
   double limited_depth_m(double requested_m) const;
-  std::optional<std::size_t> block_at(const ImVec2& point, bool aimed) const;
+  std::optional<std::size_t> block_at(const ImVec2& point) const;
   void close_windows();
   void select_listed(std::size_t number);
   void use_block_count(std::size_t wanted);
   void use_line_up(const LineUp& line_up);
+  void use_worst(std::size_t slot);
+  void leave_worst();
+  void stop_or_go_on();
+  void save(int what);
+  WindowActions make_actions();
   void read_notices(double now_s);
   bool needs_texts(double now_s);
   void draw(bool texts);
   void draw_texts();
-  std::vector<Viewport> draw_blocks();
+  void draw_blocks();
   std::vector<BlockPose> block_poses() const;
   BlockPose model_pose(std::size_t slot, BlockPose pose) const;
   BlockPose reference_pose(BlockPose pose) const;
@@ -133,20 +214,27 @@ class DemoApp {
   bool drives_ = false;          // a key moved the tool in the frame before
   double driven_until_s_ = 0.0;  // at least, by a tap of a key; steady clock
   bool orbiting_ = false;
-  bool over_scene_ = false;  // the mouse, in the frame before
+  // One stroke of the pointer is one press of the block where it began, until the button is released.
+  struct Stroke {
+    std::size_t block = 0;
+    float from_px = 0.0F;  // y at depth 0
+    bool hovers = false;   // without a button, in an exhibit
+  };
+  std::optional<Stroke> stroke_;
   ImVec2 mouse_{-1.0F, -1.0F};
   DemoFiles files_{view_, [this](std::string text, bool problem) { notify(std::move(text), problem); }};
   SessionRequest request_;
   std::string first_device_;            // of the command line
   std::optional<SessionRequest> next_;  // the session to open after this frame
   std::vector<WindowCommand> commands_;
+  WindowActions actions_;
   double key_velocity_m_per_s_ = 0.0;  // of the tool by the keys of this frame, positive inwards
   WindowLayout layout_;
-  double texts_due_s_ = 0.0;       // when the texts are drawn next
-  double lively_until_s_ = 0.0;    // until then they are drawn in every frame
-  std::vector<Viewport> changed_;  // parts of the window in this frame
-  bool no_model_ = true;           // in the last frame
-  bool everything_ = true;         // the next frame draws all of the window
+  Pixels panel_{false};          // the picture of the panel
+  double texts_due_s_ = 0.0;     // when the texts are drawn next
+  double lively_until_s_ = 0.0;  // until then they are drawn in every frame
+  bool no_model_ = true;         // in the last frame
+  std::string picture_;          // a file for the picture of the next frame; empty: none
   double frame_began_s_ = 0.0;
   double last_frame_s_ = 0.0;  // end of the last frame
   bool leaving_ = false;       // `close` was called; an exhibit ends only by it

@@ -8,7 +8,6 @@
 
 #include "engine/live/pacer.h"
 #include "rendering/app/demo_app.h"
-#include "rendering/panels/window_view.h"
 #include "scenes/worker/model_worker.h"
 
 namespace palpate {
@@ -80,25 +79,19 @@ std::vector<WindowChoice> DemoApp::choices() {
     for (const LineUp& one : line_ups()) models.push_back(one.name);
   if (const LineUp* one = find_line_up(session_->line_up())) line_up = static_cast<std::size_t>(one - &line_ups()[0]);
   const auto names = [](auto... all) { return std::vector<std::string>{all...}; };
-  const auto first_is = [](bool& value) { return [&value](std::size_t i) { value = i == 0; }; };
-  return {
-      {GLFW_KEY_B, "Blocks", "one block, two, or one of each model and of the truth", names("1", "2", "all"),
-       std::min<std::size_t>(settings.blocks - 1, 2),
-       [this](std::size_t i) { use_block_count(i < 2 ? i + 1 : kAllBlocks); }},
-      {GLFW_KEY_N, "Models", "the next set of models: comparison, sizes, corrections, direct", models, line_up,
-       [this](std::size_t i) { use_line_up(line_ups()[i]); },
-       "there is nothing to fit models to: O chooses a material, a recording is one too"},
-      {GLFW_KEY_V, "Curves", "the difference in its band, or its mean over 50 ms",
-       names("difference", "mean over 50 ms"), settings.difference ? 0U : 1U, first_is(settings.difference)},
-      {GLFW_KEY_E, "Plot", "the error against the time that a model takes, or against the force",
-       names("error against time", "error against force"), view_.verdict ? 0U : 1U, first_is(view_.verdict)},
-      {GLFW_KEY_T, "Theme", "light or dark", names("light", "dark"), static_cast<std::size_t>(settings.theme),
-       [&settings](std::size_t i) { settings.theme = static_cast<Theme>(i); }},
-      {GLFW_KEY_D, "Push only while", "the device pushes only while G is held, only while its grip is held, or always",
-       session_->renders_force() ? names("always", "G is held", "the grip is held") : names(),
-       static_cast<std::size_t>(session_->controls().dead_man),
-       [this](std::size_t i) { session_->controls().dead_man = static_cast<DeadMan>(i); },
-       "there is no device that pushes: nothing to hold a switch for"}};
+  return {{GLFW_KEY_B, "Blocks", "one block, two models beside the truth, or one of each model and of the truth",
+           names("1", "2", "all"), std::min<std::size_t>(settings.blocks - 1, 2),
+           [this](std::size_t i) { use_block_count(i < 2 ? i + 1 : kAllBlocks); }},
+          {GLFW_KEY_N, "New models", "the next set of models: comparison, sizes, corrections, direct", models, line_up,
+           [this](std::size_t i) { use_line_up(line_ups()[i]); },
+           "there is nothing to fit models to: S chooses a material, a recording is one too"},
+          {GLFW_KEY_T, "Theme", "light or dark", names("light", "dark"), static_cast<std::size_t>(settings.theme),
+           [&settings](std::size_t i) { settings.theme = static_cast<Theme>(i); }},
+          {GLFW_KEY_A, "Allow force", "the device pushes only while G is held, only while its grip is held, or always",
+           session_->renders_force() ? names("always", "G is held", "the grip is held") : names(),
+           static_cast<std::size_t>(session_->controls().dead_man),
+           [this](std::size_t i) { session_->controls().dead_man = static_cast<DeadMan>(i); },
+           "there is no device that pushes: nothing to hold a switch for"}};
 }
 
 std::vector<WindowCommand> DemoApp::make_commands() {
@@ -118,18 +111,18 @@ std::vector<WindowCommand> DemoApp::make_commands() {
   WindowCommand help = toggle(GLFW_KEY_H, "Help", "what the picture shows, and all keys", dialogs.help);
   help.keys.push_back(GLFW_KEY_SLASH);
   std::vector<WindowCommand> all{
-      hint("mouse", "moves the probe, over the block; down is deeper"),
+      hint("left button", "press it on a block and pull down: the probe presses; let go: it is lifted"),
       hint("wheel", "moves the probe step by step; with Ctrl: zooms the view"),
       hint("right button", "turns the view"),
       when(When::held,
            keys({GLFW_KEY_DOWN, GLFW_KEY_UP}, "press deeper; lift the probe to just above the surface", press)),
       shown_as("1 ... 9", keys({GLFW_KEY_1, GLFW_KEY_2, GLFW_KEY_3, GLFW_KEY_4, GLFW_KEY_5, GLFW_KEY_6, GLFW_KEY_7,
                                 GLFW_KEY_8, GLFW_KEY_9},
-                               "make a model the active one; a click on its block or row too",
+                               "choose a model, or the true material after the last; a click on its block or row too",
                                [this](std::size_t key) { select_listed(key); })),
-      in_bar(toggle(GLFW_KEY_M, "Open", "open recordings, other programs' tables or models", dialogs.file_list)),
-      in_bar(toggle(GLFW_KEY_O, "Scene", "choose another material", dialogs.scene_list)),
-      in_bar(with_state(command(GLFW_KEY_U, "Device", "choose what holds the tool",
+      in_bar(toggle(GLFW_KEY_O, "Open", "open recordings, other programs' tables or models", dialogs.file_list)),
+      in_bar(toggle(GLFW_KEY_S, "Scene", "choose another material", dialogs.scene_list)),
+      in_bar(with_state(command(GLFW_KEY_D, "Device", "choose what holds the tool",
                                 [this, &dialogs] {
                                   dialogs.device_list = !dialogs.device_list;
                                   if (dialogs.device_list) files_.look_for_devices();
@@ -139,34 +132,29 @@ std::vector<WindowCommand> DemoApp::make_commands() {
           command(GLFW_KEY_R, "Record", "record this session to a file that `palpate fit` reads",
                   [this] { files_.record(*session_); }),
           [this] { return session_->recording().active; }, "Stop recording")),
-      in_bar(toggle(GLFW_KEY_W, "View", "choose what is shown, and what is compared with what", dialogs.view_list)),
+      in_bar(toggle(GLFW_KEY_V, "View", "choose what is shown, and what is compared with what", dialogs.view_list)),
+      in_bar(toggle(GLFW_KEY_E, "Export", "save picture, curves, table or model", dialogs.export_list)),
       help,
       with_state(
-          command(GLFW_KEY_SPACE, "Freeze", "freeze curves and picture to look back; continue",
-                  [this] { view_.time.paused ? view_.time.run() : view_.time.pause(steady_now_s()); }),
+          command(GLFW_KEY_SPACE, "Stop", "stop blocks, curves, numbers and a replay to look back; continue",
+                  [this] { stop_or_go_on(); }),
           [this] { return view_.time.paused; }, "Go on"),
+      command(GLFW_KEY_W, "Worst", "the moment of the active model's largest error, of the test, then of this session",
+              [this] { use_worst(session_->models().selected()); }),
+      command(GLFW_KEY_M, "", "the menu", [this] { view_.opens_menu = true; }),
       command(GLFW_KEY_C, "Clear", "clear the errors so far and the alarms", [this] { session_->reset_figures(); }),
       toggle(GLFW_KEY_X, "Arrows x 10", "arrows that show ten times the difference, and back", view_.exaggerated),
-      with_state(command(GLFW_KEY_J, "Feel", "scale the stiffness and damping of the rendered force; back to the model",
+      with_state(command(GLFW_KEY_F, "Feel", "scale the stiffness and damping of the rendered force; back to the model",
                          [this] {
                            view_.scales_force = !view_.scales_force;
                            session_->controls().scale = {};
                          }),
                  [this] { return view_.scales_force; }),
-      command(GLFW_KEY_S, "Save curves", "save what the curves show, as a figure and as data",
-              [this] { files_.save_curves(*session_, shown_, curves_.columns()); }),
-      command(GLFW_KEY_K, "Save model", "save the active model to a file", [this] { files_.save_model(*session_); }),
-      hint("a row, right button", "renames a model, takes it out"),
-      hint("on the curves", "drag: zoom; wheel: scroll back; double click: continue"),
+      hint("Tab", "moves a focus through the buttons; Enter or Space presses it"),
+      hint("a row", "Shift and click: two models beside the truth; x: takes it out"),
+      hint("on the curves", "drag: the moment that is shown; Shift and drag: zoom; wheel: scroll; double click: go on"),
       when(When::held,
            keys({GLFW_KEY_LEFT, GLFW_KEY_RIGHT}, "scroll back and forth while the curves stand still", scroll)),
-      in_replay(with_state(
-          command(GLFW_KEY_P, "Pause", "pause a replayed recording and its curves, and play on",
-                  [this] {
-                    session_->replay()->pause(!session_->replay()->paused());
-                    view_.time.run();
-                  }),
-          [this] { return session_->replay() != nullptr && session_->replay()->paused(); }, "Play")),
       in_replay(command(GLFW_KEY_BACKSPACE, "Back to the hand", "end the replay and press the block yourself",
                         [this] { use_device(first_device_); })),
       in_replay(when(When::repeated, command(GLFW_KEY_COMMA, "<", "one sample back; the recording pauses",
@@ -177,10 +165,10 @@ std::vector<WindowCommand> DemoApp::make_commands() {
                      [seek](std::size_t key) { seek(key == 0 ? -kSeekStep_s : kSeekStep_s); })),
       in_replay(keys({GLFW_KEY_LEFT_BRACKET, GLFW_KEY_RIGHT_BRACKET}, "play a recording slower or faster",
                      [play_at](std::size_t key) { play_at(key == 0 ? 1.0 / kSpeedStep : kSpeedStep); })),
-      toggle(GLFW_KEY_L, "Loop", "all figures of the loop, and its faults", view_.details),
+      toggle(GLFW_KEY_L, "Loop", "the faults of the loop", view_.details),
       command(GLFW_KEY_Z, "", "the device's tool is at its rest position: zero it there",
               [this] { session_->start_zeroing(); }),
-      when(When::held, command(GLFW_KEY_G, "", "hold it to let the device push, if D requires it",
+      when(When::held, command(GLFW_KEY_G, "", "hold it to let the device push, if A requires it",
                                [this] {
                                  if (session_->controls().dead_man == DeadMan::key)
                                    session_->controls().held_s = steady_now_s();
@@ -206,21 +194,66 @@ std::vector<WindowCommand> DemoApp::make_commands() {
 
 void DemoApp::select_listed(std::size_t number) {
   const std::vector<std::size_t> listed = shown_.models.listed();
-  if (number < listed.size()) session_->models().select(listed[number]);
+  if (number < listed.size()) actions_.select(listed[number]);
+  if (number == listed.size() && shown_.models.reference == kReferenceBlock) view_.material = shown_.models.compared;
 }
 
 void DemoApp::use_block_count(std::size_t wanted) {
   view_.settings.blocks = wanted;
-  // Says why there are fewer blocks than the user selected.
-  const bool reference = shown_.models.compared && shown_.models.reference == kReferenceBlock && wanted > 1;
-  const std::size_t shown = shown_.models.drawn().size() + (reference ? 1 : 0);
-  if (wanted == 2 && shown < wanted)
-    notify(std::to_string(shown) + " of " + std::to_string(wanted) + " blocks: no more models are ready", false);
+  const auto ready = std::ranges::count(shown_.models.slots, SlotState::ready, &ModelView::state);
+  if (wanted == 2 && ready < 2) notify("two models are needed, and " + std::to_string(ready) + " are ready", false);
+}
+
+// Everything stands still or nothing: blocks, curves, numbers, a replay.
+void DemoApp::stop_or_go_on() {
+  const bool stop = !view_.time.paused;
+  leave_worst();
+  if (ReplayControl* replay = session_->replay()) replay->pause(stop);
+  stop ? view_.time.pause(shown_.now_s) : view_.time.run();
+}
+
+// The largest error of the test; of this session, when that is shown already; and back.
+void DemoApp::use_worst(std::size_t slot) {
+  const bool had_test = view_.worst && view_.worst->slot == slot && view_.worst->of_test;
+  const bool had_session = view_.worst && view_.worst->slot == slot && !view_.worst->of_test;
+  leave_worst();
+  if (had_session) return view_.time.run();
+  actions_.select(slot);
+  auto found = session_->worst(slot, !had_test, view_.time.zero_s);
+  if (!found) return notify("no error is known yet: press the block, or wait for the test", false);
+  constexpr double kAfter_s = 1.5, kShown_around_s = 5.0;
+  const ForceHistory& ticks = found->history ? *found->history : session_->comparison().history();
+  view_.time.run();
+  view_.time.pause(found->at_s + kAfter_s);
+  view_.time.shown_s = std::clamp(found->at_s + kAfter_s - ticks[0].loop_time_s, kLeastShown_s, kShown_around_s);
+  view_.time.rest_s = found->at_s;
+  view_.worst = WorstMoment{std::move(*found), slot};
+  if (session_->replay() != nullptr) session_->replay()->pause(true);
+  curves_ = {};
+}
+
+void DemoApp::leave_worst() {
+  if (!view_.worst) return;
+  view_.worst.reset();
+  view_.time.run();
+  curves_ = {};
+}
+
+void DemoApp::save(int what) {
+  if (what == 0) picture_ = files_.picture_path();
+  if (what == 1) files_.save_curves(*session_, shown_, curves_.columns());
+  if (what == 2) files_.save_table(shown_);
+  if (what == 3) {
+    glfwSetClipboardString(window_->handle(), table_csv(shown_.models).c_str());
+    notify("the table is in the clipboard", false);
+  }
+  if (what == 4) files_.save_model(*session_);
 }
 
 void DemoApp::close_windows() {
   view_.dialogs = {};
   view_.details = false;
+  view_.focus = -1;
 }
 
 void DemoApp::use_line_up(const LineUp& line_up) {

@@ -1,4 +1,4 @@
-#include "rendering/app/demo_files.h"
+#include "rendering/app/demo_app.h"
 
 #include <algorithm>
 #include <chrono>
@@ -12,7 +12,6 @@
 #include "engine/base/atomic_file.h"
 #include "engine/base/text.h"
 #include "engine/base/whole_file.h"
-#include "rendering/panels/panel_parts.h"
 #include "scenes/plot/plot.h"
 #include "scenes/scene/scene.h"
 
@@ -20,8 +19,7 @@ namespace palpate {
 
 // The settings as JSON: a missing field is the default.
 NLOHMANN_JSON_SERIALIZE_ENUM(Theme, {{Theme::light, "light"}, {Theme::dark, "dark"}})
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(CameraTurn, yaw_rad, pitch_rad, distance)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(Settings, theme, blocks, difference, text_size, line_up, recent, camera)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(Settings, theme, text_size, recent)
 
 namespace {
 
@@ -66,7 +64,6 @@ Result<Settings> read_settings(const std::string& path) {
   if (!text) return Settings();
   try {
     Settings settings = nlohmann::json::parse(*text).get<Settings>();
-    if (settings.blocks != 1 && settings.blocks != 2) settings.blocks = kAllBlocks;
     settings.text_size = std::clamp(settings.text_size, kSmallestText, kLargestText);
     return settings;
   } catch (const nlohmann::json::exception&) {
@@ -188,12 +185,9 @@ void DemoFiles::use_settings(const std::string& file) {
   view_.settings = *settings;
 }
 
-void DemoFiles::save_settings(const LiveSession& session, const CameraTurn& camera) {
-  if (settings_file_.empty()) return;
-  if (!session.line_up().empty()) view_.settings.line_up = session.line_up();
-  view_.settings.camera = camera;
+void DemoFiles::save_settings() {
   // The window is closing, so an error cannot be shown.
-  (void)write_settings(settings_file_, view_.settings);
+  if (!settings_file_.empty()) (void)write_settings(settings_file_, view_.settings);
 }
 
 void DemoFiles::update(const LiveSession& session) {
@@ -243,6 +237,7 @@ void DemoFiles::open_recording(const std::string& path) {
         view_.dialogs.recording_roles.problem = offered.error().message;
         return;
       }
+      if (offered->path != path) notify_("imported " + path + " as " + offered->path, false);
       view_.dialogs.recording_roles.add(*offered);
       remember(path);
     };
@@ -273,6 +268,13 @@ void DemoFiles::save_curves(const LiveSession& session, const WindowView& shown,
     };
   };
   waiting_.push_back({save, true});
+}
+
+void DemoFiles::save_table(const WindowView& shown) {
+  const std::string path = new_path("/table-%Y%m%d-%H%M%S", ".csv");
+  if (path.empty()) return;
+  const Status written = write_file_atomically(path, table_csv(shown.models), false);
+  notify_(written ? "saved " + path : written.error().message, !written);
 }
 
 void DemoFiles::save_model(const LiveSession& session) {

@@ -8,8 +8,6 @@
 
 #include "engine/live/pacer.h"
 #include "rendering/app/demo_app.h"
-#include "rendering/panels/panel_parts.h"
-#include "rendering/panels/window_view.h"
 
 namespace palpate {
 namespace {
@@ -38,9 +36,13 @@ bool DemoApp::needs_texts(double now_s) {
   double x = 0.0, y = 0.0;
   glfwGetCursorPos(window_->handle(), &x, &y);
   const ImVec2 mouse(static_cast<float>(x), static_cast<float>(y));
-  if (!follow_mouse(mouse)) note_input();
+  // A stroke moves the blocks only.
+  if ((mouse.x != mouse_.x || mouse.y != mouse_.y) && !stroke_) note_input();
+  mouse_ = mouse;
+  follow_stroke();
   // The screens of an exhibit and lists move.
-  const bool lively = now_s < lively_until_s_ || view_.exhibit.on || view_.dialogs.any() || next_;
+  const bool lively =
+      now_s < lively_until_s_ || view_.exhibit.on || view_.dialogs.any() || view_.time.dragging || next_;
   const UiSize size = window_->size();
   const ImVec2 drawn = ImGui::GetIO().DisplaySize;
   if (!lively && now_s < texts_due_s_ && size.width == drawn.x && size.height == drawn.y) return false;
@@ -51,59 +53,50 @@ bool DemoApp::needs_texts(double now_s) {
 
 void DemoApp::draw_texts() {
   const bool exhibit = view_.exhibit.on;
-  everything_ |= style_.update(window_->size(), exhibit ? kExhibitText : view_.settings.text_size, view_.settings.theme,
-                               exhibit ? kExhibitBody_px : kBody_px);
+  (void)style_.update(window_->size(), exhibit ? kExhibitText : view_.settings.text_size, view_.settings.theme,
+                      exhibit ? kExhibitBody_px : kBody_px);
   ui_->begin_frame(tapped());
   layout_ = lay_out(ImGui::GetIO().DisplaySize);
   handle_mouse();
-  const OverlayActions actions{&commands_,
-                               [this] { return choices(); },
-                               [this](const std::string& scene) { use_material(scene, {}, first_device_); },
-                               [this](const std::string& path) { drop_files({path}); },
-                               [this](const std::string& device) {
-                                 first_device_ = device;
-                                 use_device(device);
-                               },
-                               [this] { use_recording_roles(); }};
-  draw_overlay(*session_, shown_, *blocks_, view_, style_, layout_.scene, actions);
+  draw_overlay(shown_, *blocks_, view_, style_, layout_.scene, actions_);
   if (exhibit) {
-    exhibit_.draw(*session_, shown_, *blocks_, style_, layout_);
+    exhibit_.draw(shown_, *blocks_, style_, layout_);
   } else {
-    draw_panel(curves_, *session_, shown_, view_, style_, layout_.panel);
+    draw_panel(curves_, shown_, view_, style_, layout_.panel, actions_);
   }
   ImGui::Render();
+  const Viewport panel = pixels_of(layout_.panel);
+  if (panel.empty()) return;
+  const Rgb& colour = style_.colours().panel;
+  panel_.draw_into(panel.width, panel.height);
+  glClearColor(colour.r, colour.g, colour.b, 1.0F);
+  glClear(GL_COLOR_BUFFER_BIT);
+  UiContext::draw_panel(layout_.panel.at, layout_.panel.size);
 }
 
 void DemoApp::draw(bool texts) {
-  texts = texts || everything_ || !window_->keeps_frame();
   if (texts) draw_texts();
-  changed_ = draw_blocks();
-  const Viewport scene = pixels_of(layout_.scene), panel = pixels_of(layout_.panel);
-  if (std::exchange(everything_, false) || !window_->keeps_frame()) changed_ = {scene, panel};
-  if (texts) changed_ = ui_->changed_parts(changed_);
-  for (const Viewport& part : changed_) {
-    blocks_->copy_to_window(part);
-    // With a software renderer, clearing is faster than filling a rectangle.
-    if (const Viewport of_panel = common_part(part, panel); !of_panel.empty())
-      window_->clear(of_panel, style_.colours().panel);
-  }
-  ui_->draw_again(changed_);
+  draw_blocks();
+  const Viewport panel = pixels_of(layout_.panel);
+  if (!panel.empty()) panel_.copy_to(nullptr, {0, 0, panel.width, panel.height}, panel);
+  glBindFramebuffer(GL_FRAMEBUFFER, 0);
+  UiContext::draw_others();
 }
 
-std::vector<Viewport> DemoApp::draw_blocks() {
+void DemoApp::draw_blocks() {
   const SceneArea& area = layout_.scene;
   const std::vector<BlockPose> poses = block_poses();
-  const SceneArea stage = stage_of(*session_, shown_.models.verdict, view_, style_, area);
+  const SceneArea stage = stage_of(shown_, view_, style_, area);
   blocks_->leave_free((stage.at.y - area.at.y) / area.size.y,
                       1.0F - (stage.at.y - area.at.y + stage.size.y) / area.size.y);
   // Their number changes when models become ready; the camera jumps to the first ones.
   blocks_->show(poses.size(), {area.size.x, area.size.y}, std::exchange(no_model_, shown_.blocks.empty()));
-  return blocks_->draw(poses, pixels_of(area), view_.settings.theme);
+  blocks_->draw(poses, pixels_of(area), view_.settings.theme);
 }
 
 std::vector<BlockPose> DemoApp::block_poses() const {
   if (view_.exhibit.on) {
-    const std::vector<BlockPose> revealed = exhibit_.shown_poses(*session_, shown_, view_.settings.theme);
+    const std::vector<BlockPose> revealed = exhibit_.shown_poses(shown_, view_.settings.theme);
     if (!revealed.empty()) return revealed;
   }
   BlockPose pose;
@@ -124,7 +117,7 @@ BlockPose DemoApp::model_pose(std::size_t slot, BlockPose pose) const {
   const ModelsView& models = shown_.models;
   const ModelView& model = models.slots[slot];
   const float force_N = models.now.force_N[slot], reference_N = models.now.reference_N;
-  if (view_.time.paused) {
+  if (models.stands) {
     pose.error_over_jnd = std::abs(models.now.sustained_over_jnd[slot]);
     if (std::isnan(pose.error_over_jnd)) pose.error_over_jnd = 0.0F;
   } else {
@@ -140,10 +133,13 @@ BlockPose DemoApp::model_pose(std::size_t slot, BlockPose pose) const {
   if (pose.shows_truth) {
     pose.true_dent_m = reference_pose(pose).dent_m;
     pose.true_force_N = std::max(0.0F, reference_N);
-    pose.truth = reference_colour(view_.settings.theme);
+    const bool is_model = models.reference != kReferenceBlock;
+    pose.truth =
+        is_model ? slot_colour(models, models.reference, view_.settings.theme) : reference_colour(view_.settings.theme);
   }
   if (view_.exhibit.blind) pose.arrow = palette(view_.settings.theme).text;
-  pose.shows_error = !view_.exhibit.blind;
+  // What is not pressed has no error.
+  pose.shows_error = !view_.exhibit.blind && models.now.in_contact;
   return pose;
 }
 
@@ -151,9 +147,9 @@ BlockPose DemoApp::model_pose(std::size_t slot, BlockPose pose) const {
 BlockPose DemoApp::reference_pose(BlockPose pose) const {
   const ModelView* active = shown_.models.active();
   const float reference_N = shown_.models.now.reference_N;
-  if (active != nullptr && !view_.time.paused) pose.dent_m = static_cast<float>(active->dent_m);
+  if (active != nullptr && !shown_.models.stands) pose.dent_m = static_cast<float>(active->dent_m);
   pose.force_N = std::isfinite(reference_N) ? reference_N : 0.0F;
-  pose.arrow = reference_colour(view_.settings.theme);
+  pose.arrow = view_.exhibit.blind ? palette(view_.settings.theme).text : reference_colour(view_.settings.theme);
   pose.shows_error = false;
   return pose;
 }

@@ -20,14 +20,15 @@ constexpr double kWheelStep_m = 0.0005;
 // a mouse with a precision of a few pixels.
 constexpr float kMouseGain = 0.33F;
 constexpr float kClick_px = 4.0F;
-// The share of the distance from the surface to the lower edge at which the tool is at the largest trained depth.
-constexpr float kReach = 0.8F;
-constexpr CameraTurn kCloseUp{0.0F, 0.0F, 0.85F};  // of the reveal of an exhibit
+// The share of the distance from the beginning of a stroke to the lower edge at which the tool is at the largest
+// trained depth.
+constexpr float kReach = 0.8F, kLeastReach = 0.35F;  // the second: in heights of the picture
+constexpr CameraTurn kCloseUp{0.0F, 0.0F, 0.85F};    // of the reveal of an exhibit
 
 }  // namespace
 
 void DemoApp::handle_key_event(int key, int action, int modifiers) {
-  if (view_.exhibit.on && action == GLFW_RELEASE && key == GLFW_KEY_DOWN) Exhibit::let_go(*session_);
+  if (view_.exhibit.on && action == GLFW_RELEASE && key == GLFW_KEY_DOWN) lift_tool();
   note_input();
   std::erase(down_, key);
   if (action == GLFW_RELEASE) return;
@@ -50,7 +51,7 @@ void DemoApp::handle_keys() {
   drive_tool();
   // The next visitor starts with the initial view.
   const bool was_close = view_.exhibit.close_up;
-  if (view_.exhibit.on && exhibit_.update(*session_, view_)) blocks_->camera().go_home();
+  if (view_.exhibit.on && exhibit_.update(shown_, view_, actions_)) blocks_->camera().go_home();
   if (view_.exhibit.close_up != was_close) blocks_->camera().turn(view_.exhibit.close_up ? kCloseUp : CameraTurn{});
 }
 
@@ -58,7 +59,30 @@ void DemoApp::run_commands(const std::vector<KeyPress>& keys) {
   const bool menu = ImGui::IsPopupOpen(nullptr, ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel);
   const bool in_list = menu || view_.dialogs.any();
   run_held(keys, in_list);
-  for (const KeyPress& press : keys) view_.exhibit.on ? handle_exhibit_key(press) : run_pressed(press, in_list);
+  for (const KeyPress& press : keys) {
+    if (view_.exhibit.on) {
+      handle_exhibit_key(press);
+    } else if (in_list || !press_focused(press)) {
+      run_pressed(press, in_list);
+    }
+  }
+}
+
+// Tab moves a focus through the buttons; Enter or Space presses the one that has it. Returns whether it did.
+bool DemoApp::press_focused(const KeyPress& press) {
+  std::vector<const WindowCommand*> buttons;
+  for (const WindowCommand& command : commands_)
+    if (command.bar) buttons.push_back(&command);
+  const int count = static_cast<int>(buttons.size()) + 1;  // with that of the menu
+  if (press.key == GLFW_KEY_TAB) {
+    const bool back = (press.modifiers & GLFW_MOD_SHIFT) != 0;
+    view_.focus = back ? (view_.focus <= 0 ? count : view_.focus) - 1 : (view_.focus + 1) % count;
+    return true;
+  }
+  if (view_.focus < 0 || (press.key != GLFW_KEY_ENTER && press.key != GLFW_KEY_SPACE)) return false;
+  const auto focused = static_cast<std::size_t>(view_.focus);
+  focused < buttons.size() ? buttons[focused]->run(0) : void(view_.opens_menu = true);
+  return true;
 }
 
 void DemoApp::handle_exhibit_key(const KeyPress& press) {
@@ -67,7 +91,7 @@ void DemoApp::handle_exhibit_key(const KeyPress& press) {
   if (chord && press.key == GLFW_KEY_Q) close();
   if (chord && press.key == GLFW_KEY_T) exhibit_.toggle_host();
   if (press.key == GLFW_KEY_Z && session_->newest().device.zeroing == Zeroing::needed) session_->start_zeroing();
-  if (!control && !press.again) exhibit_.press_key(press.key, *session_);
+  if (!control && !press.again) exhibit_.press_key(press.key, shown_);
 }
 
 // Whether the key runs the command; not if ImGui uses it to move through an open list or to choose in it.
@@ -137,65 +161,77 @@ double DemoApp::limited_depth_m(double requested_m) const {
   return known_m + margin_m * (1.0 - std::exp((known_m - requested_m) / margin_m));
 }
 
-// Index in WindowView::blocks of the block nearest to `point`. With `aimed`: empty unless the point is on or near it.
-std::optional<std::size_t> DemoApp::block_at(const ImVec2& point, bool aimed) const {
+// Index in WindowView::blocks of the block in whose cell `point` is; empty outside of the picture.
+std::optional<std::size_t> DemoApp::block_at(const ImVec2& point) const {
   const SceneArea& area = layout_.scene;
-  const std::size_t count = std::max<std::size_t>(shown_.blocks.size(), 1);
-  const glm::vec3 half_m = 0.5F * blocks_->size_m();
-  const glm::vec2 size(area.size.x, area.size.y);
-  float nearest_px = 1e9F;
-  std::optional<std::size_t> found;
-  for (std::size_t i = 0; i < count; ++i) {
-    const glm::vec2 middle = blocks_->on_screen(i, count, {0.0F, -half_m.y, 0.0F}, size);
-    const glm::vec2 side = blocks_->on_screen(i, count, {half_m.x, 0.0F, 0.0F}, size);
-    const float away = std::hypot(area.at.x + middle.x - point.x, area.at.y + middle.y - point.y);
-    if ((aimed && away > 1.25F * glm::length(side - middle)) || away > nearest_px) continue;
-    nearest_px = away;
-    found = i;
-  }
-  return found;
+  if (!area.holds(point)) return std::nullopt;
+  return blocks_->cell_at({point.x - area.at.x, point.y - area.at.y}, std::max<std::size_t>(shown_.blocks.size(), 1),
+                          {area.size.x, area.size.y});
 }
 
-// Once the mouse was over a block, it moves the tool in all of the picture, so that a fast move beyond the block still
-// presses. The full trained depth is within reach above the lower edge.
-void DemoApp::move_tool_to(const ImVec2& mouse) {
-  ToolInput* tool = session_->tool_input();
-  if (tool == nullptr || view_.exhibit.tool_is_held) return;
-  const bool aimed = tool->hand_is_exploring() && !view_.exhibit.on;  // a visitor can begin anywhere
-  const auto index = block_at(mouse, aimed);
-  if (!index) return;
+void DemoApp::lift_tool() {
+  constexpr double kLifted_m = -0.008;
+  if (session_->tool_input() != nullptr) session_->tool_input()->set_target(kLifted_m, steady_now_s());
+}
+
+// The tool is at the surface where the stroke begins; a finger or a visitor presses as deep as the block that it points
+// at.
+void DemoApp::begin_stroke(const ImVec2& mouse) {
+  const auto block = block_at(mouse);
+  if (!block || session_->tool_input() == nullptr || view_.exhibit.tool_is_held) return;
+  stroke_ = Stroke{*block, mouse.y, false};
+  if (!view_.exhibit.on) return;
   const SceneArea& area = layout_.scene;
+  const std::size_t count = std::max<std::size_t>(shown_.blocks.size(), 1);
+  stroke_->from_px =
+      area.at.y + blocks_->on_screen(*block, count, {0.0F, 0.0F, 0.0F}, glm::vec2(area.size.x, area.size.y)).y;
+}
+
+// Moves the tool with the pointer, in every frame. The depth that the hand aims at is the way down from the beginning
+// of the stroke; the full trained depth is within reach.
+void DemoApp::follow_stroke() {
+  ToolInput* tool = session_->tool_input();
+  if (!stroke_ || tool == nullptr) return;
+  if (view_.exhibit.tool_is_held) return stroke_.reset();
+  const bool down = ImGui::IsMouseDown(ImGuiMouseButton_Left);
+  const SceneArea& area = layout_.scene;
+  if (stroke_->hovers ? !area.holds(mouse_) : !down) {
+    stroke_.reset();
+    lift_tool();
+    return;
+  }
   const glm::vec2 size(area.size.x, area.size.y);
   const std::size_t count = std::max<std::size_t>(shown_.blocks.size(), 1);
-  const float surface_px = blocks_->on_screen(*index, count, {0.0F, 0.0F, 0.0F}, size).y;
-  const double below_px = mouse.y - area.at.y - surface_px;
-  const double room_px = std::max(1.0, static_cast<double>(kReach * (area.size.y - surface_px)));
-  double m_per_px = static_cast<double>(kMouseGain * blocks_->depth_per_pixel(*index, count, size));
+  const float y = std::clamp(mouse_.y, area.at.y, area.at.y + area.size.y);
+  const float room_px = std::max(kReach * (area.at.y + area.size.y - stroke_->from_px), kLeastReach * area.size.y);
+  double m_per_px =
+      static_cast<double>(kMouseGain * blocks_->depth_per_pixel(std::min(stroke_->block, count - 1), count, size));
   const double known_m = session_->models().trained_depth_m();
-  if (std::isfinite(known_m)) m_per_px = std::max(m_per_px, known_m / room_px);
-  tool->set_target(limited_depth_m(m_per_px * below_px), steady_now_s());
+  if (std::isfinite(known_m)) m_per_px = std::max(m_per_px, known_m / static_cast<double>(room_px));
+  tool->set_target(limited_depth_m(m_per_px * static_cast<double>(y - stroke_->from_px)), steady_now_s());
+}
+
+// A visitor's pointer presses without a button, too; above the surface it may change the block.
+void DemoApp::hover_block(const ImVec2& mouse) {
+  const bool above = stroke_ && stroke_->hovers && mouse.y < stroke_->from_px;
+  if (stroke_ && !above) return;
+  begin_stroke(mouse);
+  if (stroke_) stroke_->hovers = true;
 }
 
 // Call it within a frame, because ImGui clears the motion of the wheel at its end.
 void DemoApp::handle_mouse() {
   const ImGuiIO& io = ImGui::GetIO();
-  const bool inside = layout_.scene.holds(io.MousePos);
-  const bool over_scene = inside && !io.WantCaptureMouse;
-  const bool left = over_scene_ && !inside;
-  over_scene_ = over_scene || (over_scene_ && inside);
+  const bool over_scene = layout_.scene.holds(io.MousePos) && !io.WantCaptureMouse;
   if (ImGui::IsMouseClicked(ImGuiMouseButton_Right) && over_scene) orbiting_ = true;
   if (!ImGui::IsMouseDown(ImGuiMouseButton_Right)) orbiting_ = false;
   if (orbiting_)
     return blocks_->camera().orbit(-kOrbit_rad_per_px * io.MouseDelta.x, kOrbit_rad_per_px * io.MouseDelta.y);
-  ToolInput* tool = session_->tool_input();
-  if (left && tool != nullptr && !tool->hand_is_exploring() && session_->newest().tick.position_m > 0.0) {
-    Exhibit::let_go(*session_);
-    if (!view_.exhibit.on) notify("the mouse has left the picture: the probe is lifted", false);
-    return;
-  }
-  // A finger that leaves the screen releases the tool.
-  if (view_.exhibit.on && ImGui::IsMouseReleased(ImGuiMouseButton_Left)) Exhibit::let_go(*session_);
   if (!over_scene) return;
+  if (ImGui::IsMouseClicked(ImGuiMouseButton_Left)) begin_stroke(io.MousePos);
+  const bool moved = io.MouseDelta.x != 0.0F || io.MouseDelta.y != 0.0F;
+  if (view_.exhibit.on && moved && !ImGui::IsAnyMouseDown()) hover_block(io.MousePos);
+  ToolInput* tool = session_->tool_input();
   if (io.KeyCtrl) {
     blocks_->camera().zoom(std::pow(kZoom_per_step, io.MouseWheel));
   } else if (io.MouseWheel != 0.0F && tool != nullptr) {
@@ -204,22 +240,10 @@ void DemoApp::handle_mouse() {
   }
   if (!view_.exhibit.on && ImGui::IsMouseReleased(ImGuiMouseButton_Left) &&
       io.MouseDragMaxDistanceSqr[ImGuiMouseButton_Left] < kClick_px * kClick_px) {
-    const auto block = block_at(io.MousePos, true);
-    if (block && *block < shown_.blocks.size()) session_->models().select(shown_.blocks[*block]);
+    const auto block = block_at(io.MousePos);
+    if (block && *block < shown_.blocks.size() && shown_.blocks[*block] != kReferenceBlock)
+      actions_.select(shown_.blocks[*block]);
   }
-  const bool touched = view_.exhibit.on && ImGui::IsMouseClicked(ImGuiMouseButton_Left);  // even without a move
-  if (io.MouseDelta.x != 0.0F || io.MouseDelta.y != 0.0F || touched) move_tool_to(io.MousePos);
-}
-
-// The same for a frame without texts, while only the mouse moves. Returns false, without an effect, if that is not
-// enough: a button or a key is held, or the mouse is not over the free part of the picture.
-bool DemoApp::follow_mouse(const ImVec2& mouse) {
-  if (!down_.empty() || !keys_.empty() || ImGui::IsAnyMouseDown()) return false;
-  if (mouse.x == mouse_.x && mouse.y == mouse_.y) return true;
-  mouse_ = mouse;
-  if (!layout_.scene.holds(mouse) || !over_scene_ || ImGui::GetIO().WantCaptureMouse) return false;
-  move_tool_to(mouse);
-  return true;
 }
 
 }  // namespace palpate

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -114,15 +115,17 @@ void run_frames(App& app, double seconds) {
 }
 
 Status run_study(const Arguments& arguments) {
-  std::shared_ptr<const StrokePair> strokes;
+  std::function<StudyApp::Strokes()> prepare;
   if (arguments.discriminate) {
-    const std::string& scene = arguments.demo.session.scene;
-    auto prepared = prepare_strokes(scene.empty() ? "silicone_block" : scene, arguments.demo.session.models,
-                                    *arguments.discriminate);
-    if (!prepared) return prepared.error();
-    strokes = std::move(*prepared);
+    prepare = [&]() -> StudyApp::Strokes {
+      const std::string& scene = arguments.demo.session.scene;
+      auto prepared = prepare_strokes(scene.empty() ? "silicone_block" : scene, arguments.demo.session.models,
+                                      *arguments.discriminate);
+      if (!prepared) return prepared.error();
+      return std::shared_ptr<const StrokePair>(std::move(*prepared));
+    };
   }
-  auto app = StudyApp::create(arguments.demo.window, arguments.demo.session.device, strokes);
+  auto app = StudyApp::create(arguments.demo.window, arguments.demo.session.device, prepare);
   if (!app) return app.error();
   run_frames(**app, arguments.seconds);
   return arguments.screenshot.empty() ? Status() : (*app)->screenshot(arguments.screenshot, arguments.force);
@@ -131,7 +134,7 @@ Status run_study(const Arguments& arguments) {
 Status run_demo(Arguments& arguments) {
   if (Status status = check_outputs(arguments); !status) return status;
   std::string& device = arguments.demo.session.device;
-  arguments.demo.session.remote_bridges = arguments.bridge_remote;
+  if (arguments.bridge_remote) allow_remote_bridges();
   if (arguments.demo.exhibit) arguments.demo.window.fullscreen = true;
   if (!arguments.screenshot.empty() && arguments.seconds == 0.0) arguments.seconds = kPictureAfter_s;
   if (arguments.discriminate || arguments.demo.session.scene == kStudyScene) return run_study(arguments);

@@ -6,9 +6,9 @@
 #include <cctype>
 #include <utility>
 
-#include "rendering/panels/panel_parts.h"
+#include "engine/live/pacer.h"
+#include "rendering/panels/panel.h"
 #include "scenes/scene/scene.h"
-#include "scenes/study/study_analysis.h"
 
 namespace palpate {
 namespace {
@@ -22,14 +22,30 @@ void gap() { ImGui::Dummy({1.0F, 0.6F * ImGui::GetFontSize()}); }
 }  // namespace
 
 Result<std::unique_ptr<StudyApp>> StudyApp::create(const WindowRequest& asked, const std::string& device,
-                                                   std::shared_ptr<const StrokePair> strokes, bool realtime) {
+                                                   const std::function<Strokes()>& prepare, bool realtime) {
   if (Status status = Window::find_display(); !status) return status.error();
   auto window = Window::open(asked);
   if (!window) return window.error();
-  auto study = LiveStudy::open(device, realtime, std::move(strokes));
-  if (!study) return study.error();
   std::unique_ptr<StudyApp> app(new StudyApp);
   app->window_ = std::move(*window);
+  std::shared_ptr<const StrokePair> strokes;
+  if (prepare) {
+    glfwSetWindowTitle(app->window_->handle(), "Palpate: the strokes are prepared, one moment ...");
+    app->ui_ = std::make_unique<UiContext>(app->window_->handle());
+    for (int i = 0; i < 2; ++i) {  // a new window may lose its first frame
+      glfwPollEvents();
+      app->draw();
+      app->window_->show_frame();
+    }
+    app->ui_.reset();
+    app->style_ = {};
+    auto made = prepare();
+    if (!made) return made.error();
+    strokes = std::move(*made);
+    glfwSetWindowTitle(app->window_->handle(), "Palpate");
+  }
+  auto study = LiveStudy::open(device, realtime, std::move(strokes));
+  if (!study) return study.error();
   app->study_ = std::move(*study);
   // Removes the force; the answers so far are in the file.
   Window::at_loss_of_display([&owner = app->study_] { owner.reset(); });
@@ -79,6 +95,12 @@ void StudyApp::draw() {
   const ImVec2 all = ImGui::GetIO().DisplaySize;
   begin_panel("study", {{0.5F * (1.0F - kColumnShare) * all.x, 0.15F * all.y}, {kColumnShare * all.x, 0.82F * all.y}});
   ImGui::PushTextWrapPos();
+  if (study_ == nullptr) {
+    ImGui::Text("The strokes are prepared, one moment ...");
+    ImGui::PopTextWrapPos();
+    ImGui::End();
+    return ui_->end_frame();
+  }
   session() == nullptr ? draw_entry() : draw_session();
   gap();
   if (const std::string words = study_->device_words(); !words.empty()) ImGui::Text("%s", words.c_str());
@@ -137,13 +159,6 @@ void StudyApp::draw_session() {
   gap();
   if (view.state == StudyState::presenting || view.state == StudyState::answering) draw_intervals(view);
   draw_choices(view);
-  if (view.state == StudyState::done && study_->strokes() != nullptr) {
-    const StudyFile& file = session()->file();
-    const StrokePair& strokes = *study_->strokes();
-    const Discrimination result = discrimination_of(file.header().subject, file.records(), strokes);
-    ImGui::Text("%s against %s, %s", strokes.comparison.c_str(), strokes.reference.c_str(), strokes.recording.c_str());
-    ImGui::Text("%s", discrimination_verdict(result, strokes).c_str());
-  }
   ImGui::PopFont();
 }
 
@@ -155,7 +170,8 @@ void StudyApp::draw_intervals(const StudyView& view) {
     const Rgb colour = view.interval == interval ? reference_colour(style_.theme()) : style_.colours().raised;
     ImGui::PushStyleColor(ImGuiCol_Button, paint(colour));
     const char label[2] = {"R12"[interval], '\0'};
-    if (button(label, GLFW_KEY_0 + interval, {side, side}) && interval > 0) session()->answer(interval == 2);
+    const bool early = last_ != view.state || steady_now_s() < answers_from_s_;
+    if (button(label, GLFW_KEY_0 + interval, {side, side}) && interval > 0 && !early) session()->answer(interval == 2);
     ImGui::PopStyleColor();
     ImGui::SameLine(0.0F, 0.3F * side);
   }
@@ -165,6 +181,10 @@ void StudyApp::draw_intervals(const StudyView& view) {
 }
 
 void StudyApp::draw_choices(const StudyView& view) {
+  // Nobody decides within a quarter of a second after the last push.
+  constexpr double kSlip_s = 0.25;
+  if (view.state == StudyState::answering && last_ != view.state) answers_from_s_ = steady_now_s() + kSlip_s;
+  last_ = view.state;
   StudySession& shown = *session();
   if (view.rest_ticks_left > 0) {
     ImGui::TextDisabled("%llu s left", static_cast<unsigned long long>((view.rest_ticks_left + 999) / 1000));
@@ -173,10 +193,23 @@ void StudyApp::draw_choices(const StudyView& view) {
   } else if (view.state == StudyState::ready || view.state == StudyState::rest) {
     if (button("Go on (Enter)", GLFW_KEY_ENTER)) shown.proceed();
   }
-  if (view.state == StudyState::done || view.state == StudyState::aborted) return;
+  draw_end();
+}
+
+void StudyApp::draw_end() {
+  const StudyState state = session()->state();
   gap();
   ImGui::PushFont(style_.fonts().body);
-  if (button("End the session (Esc)", GLFW_KEY_ESCAPE)) shown.abort();
+  if (state == StudyState::done || state == StudyState::aborted) {
+    if (button("Close (Enter)", GLFW_KEY_ENTER)) glfwSetWindowShouldClose(window_->handle(), GLFW_TRUE);
+  } else if (asks_end_) {
+    ImGui::Text("End the session? The answers so far are kept.");
+    if (button("End it (E)", GLFW_KEY_E)) session()->abort();
+    ImGui::SameLine();
+    if (button("No, go on (Esc)", GLFW_KEY_ESCAPE)) asks_end_ = false;
+  } else if (button("End the session (Esc)", GLFW_KEY_ESCAPE)) {
+    asks_end_ = true;
+  }
   ImGui::PopFont();
 }
 

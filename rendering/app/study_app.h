@@ -1,26 +1,29 @@
 // The window of the studies: the JND (--scene jnd_study) and the discrimination of two strokes (--discriminate). It
 // asks for the subject code and then shows the screens of the session.
-// Every button has a key. Esc ends the session at any time; the answers are kept. Nothing that could reveal an answer
-// is shown before the end. Thread guarantee: main thread only.
+// Every button has a key. Esc asks whether to end the session, at any time; the answers are kept. Nothing that could
+// reveal an answer is shown, the result of the subject included: palpate study analyse prints it. Thread guarantee:
+// main thread only.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "engine/base/result.h"
 #include "rendering/app/window.h"
-#include "rendering/ui/ui_context.h"
-#include "rendering/ui/ui_style.h"
+#include "rendering/ui/ui.h"
 #include "scenes/study/study_session.h"
 
 namespace palpate {
 
 class StudyApp {
  public:
-  // `strokes`: of the discrimination; null: the JND study. Errors: those of Window; the device cannot be opened.
+  // `prepare`: makes the strokes of the discrimination, which takes some seconds, while the window says so; null: the
+  // JND study. Errors: those of Window and `prepare`; the device cannot be opened.
+  using Strokes = Result<std::shared_ptr<const StrokePair>>;
   static Result<std::unique_ptr<StudyApp>> create(const WindowRequest& asked, const std::string& device,
-                                                  std::shared_ptr<const StrokePair> strokes, bool realtime = true);
+                                                  const std::function<Strokes()>& prepare, bool realtime = true);
   ~StudyApp() { Window::at_loss_of_display(nullptr); }
 
   void frame();
@@ -39,6 +42,7 @@ class StudyApp {
   void draw();
   void draw_entry();
   void draw_session();
+  void draw_end();
   void draw_intervals(const StudyView& view);
   void draw_choices(const StudyView& view);
   bool button(const char* label, int key, ImVec2 size = {});
@@ -47,7 +51,10 @@ class StudyApp {
   std::unique_ptr<LiveStudy> study_;
   std::unique_ptr<UiContext> ui_;
   UiStyle style_;
-  std::vector<int> pressed_;  // since the last frame
+  std::vector<int> pressed_;     // since the last frame
+  bool asks_end_ = false;        // whether to end the session
+  double answers_from_s_ = 0.0;  // steady clock; earlier ones are slips of the finger
+  StudyState last_ = StudyState::consent;
   // The code so far. With slow frames a text field of Dear ImGui sometimes loses the Enter after the code.
   std::string code_, problem_;
 };

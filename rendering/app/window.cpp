@@ -1,10 +1,8 @@
 #include "rendering/app/window.h"
 
-#include <epoxy/gl.h>
-#include <epoxy/glx.h>
-#undef Status  // of Xlib
 #include <GLFW/glfw3.h>
 #include <dlfcn.h>
+#include <epoxy/gl.h>
 #include <png.h>
 #include <unistd.h>
 
@@ -14,6 +12,7 @@
 #include <cstdio>
 #include <exception>
 #include <utility>
+#include <vector>
 
 #include "engine/base/atomic_file.h"
 #include "engine/live/pacer.h"
@@ -109,11 +108,8 @@ void keep_on_screen(GLFWwindow* handle) {
   if (x != window.x || y != window.y) glfwSetWindowPos(handle, x, y);
 }
 
-// Whether parts of a frame can be shown. A software renderer then copies only what has changed.
-bool copies_parts() {
-  Display* display = glXGetCurrentDisplay();  // null without GLX, as in a session of Wayland
-  return display != nullptr && epoxy_has_glx_extension(display, DefaultScreen(display), "GLX_MESA_copy_sub_buffer");
-}
+// The display asks for no scale, or for one that no display has.
+bool scale_is_usable(float scale) { return scale > 0.2F && scale < 10.0F; }
 
 }  // namespace
 
@@ -141,7 +137,9 @@ Result<std::unique_ptr<Window>> Window::open(const WindowRequest& request) {
   glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
   glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
   glfwWindowHint(GLFW_STENCIL_BITS, 0);
-  glfwWindowHint(GLFW_SCALE_TO_MONITOR, GLFW_TRUE);
+  float screen_scale = 0.0F;
+  if (GLFWmonitor* primary = glfwGetPrimaryMonitor()) glfwGetMonitorContentScale(primary, &screen_scale, nullptr);
+  glfwWindowHint(GLFW_SCALE_TO_MONITOR, scale_is_usable(screen_scale) ? GLFW_TRUE : GLFW_FALSE);
   GLFWmonitor* monitor = request.fullscreen ? glfwGetPrimaryMonitor() : nullptr;
   const GLFWvidmode* mode = monitor != nullptr ? glfwGetVideoMode(monitor) : nullptr;
   GLFWwindow* handle = glfwCreateWindow(mode != nullptr ? mode->width : request.width,
@@ -167,7 +165,6 @@ Result<std::unique_ptr<Window>> Window::open(const WindowRequest& request) {
   const bool software = is_software(reinterpret_cast<const char*>(glGetString(GL_RENDERER)));
   // A software renderer does not wait; on a busy machine its frames would seem to.
   window->paced_by_display_ = window->display_sets_pace(request.empty) && !software;
-  window->keeps_frame_ = software && copies_parts();
   return window;
 }
 
@@ -204,20 +201,21 @@ UiSize Window::size() const noexcept {
   size.height = static_cast<float>(height);
   size.pixels_per_unit = static_cast<float>(size.width_px) / size.width;
   glfwGetWindowContentScale(window_, &size.content_scale, nullptr);
+  if (!scale_is_usable(size.content_scale)) size.content_scale = 1.0F;
   return size;
+}
+
+bool Window::is_visible() const noexcept {
+  constexpr int kLeast_px = 64;  // less than two lines of text
+  const UiSize all = size();
+  return all.width_px >= kLeast_px && all.height_px >= kLeast_px;
 }
 
 void Window::clear(const Rgb& colour) const {
   const UiSize all = size();
-  clear({0, 0, all.width_px, all.height_px}, colour);
-}
-
-void Window::clear(const Viewport& part, const Rgb& colour) const {
-  glEnable(GL_SCISSOR_TEST);
-  glScissor(part.x, part.y, part.width, part.height);
+  glViewport(0, 0, all.width_px, all.height_px);
   glClearColor(colour.r, colour.g, colour.b, 1.0F);
   glClear(GL_COLOR_BUFFER_BIT);
-  glDisable(GL_SCISSOR_TEST);
 }
 
 Status Window::save_frame(const std::string& path, bool overwrite) {
@@ -233,33 +231,8 @@ Status Window::save_frame(const std::string& path, bool overwrite) {
   return write_file_atomically(path, *png, overwrite);
 }
 
-// Whether the driver's buffer has the size of this frame: to copy a part outside of it is an error that ends the
-// program. The driver follows a window that is resized a few frames late, or before its event arrives.
-bool Window::has_settled() {
-  const UiSize now = size();
-  const bool same = now.width_px == settled_.width && now.height_px == settled_.height;
-  settled_ = {0, 0, now.width_px, now.height_px};
-  same_size_ = same ? same_size_ + 1 : 0;
-  if (same_size_ < kSettled) return false;
-  unsigned width = 0, height = 0;
-  glXQueryDrawable(glXGetCurrentDisplay(), glXGetCurrentDrawable(), GLX_WIDTH, &width);
-  glXQueryDrawable(glXGetCurrentDisplay(), glXGetCurrentDrawable(), GLX_HEIGHT, &height);
-  if (static_cast<int>(width) != now.width_px || static_cast<int>(height) != now.height_px) same_size_ = 0;
-  return same_size_ > 0;
-}
-
 void Window::show_frame() {
-  const UiSize all = size();
-  show_frame({{0, 0, all.width_px, all.height_px}});
-}
-
-void Window::show_frame(const std::vector<Viewport>& changed) {
-  if (keeps_frame_ && has_settled()) {
-    for (const Viewport& part : changed)
-      glXCopySubBufferMESA(glXGetCurrentDisplay(), glXGetCurrentDrawable(), part.x, part.y, part.width, part.height);
-  } else {
-    glfwSwapBuffers(window_);
-  }
+  glfwSwapBuffers(window_);
   if (paced_by_display_) return;
   SteadyPacer clock;
   const std::int64_t now_ns = clock.now_ns();

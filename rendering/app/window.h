@@ -7,11 +7,9 @@
 #include <memory>
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include "engine/base/result.h"
-#include "rendering/ui/ui_style.h"
-#include "rendering/ui/viewport.h"
+#include "rendering/ui/ui.h"
 
 struct GLFWwindow;
 
@@ -42,15 +40,11 @@ class Window {
 
   GLFWwindow* handle() const noexcept { return window_; }
   UiSize size() const noexcept;
-  // Fills the frame, or a part of it, with one colour.
+  // Whether the window is large enough for anything to be seen in it.
+  bool is_visible() const noexcept;
+  // Fills the frame with one colour.
   void clear(const Rgb& colour) const;
-  void clear(const Viewport& part, const Rgb& colour) const;
-  // Whether the frame is kept when it is shown, so that the next one may be drawn in parts: not while it changes its
-  // size.
-  bool keeps_frame() const noexcept { return keeps_frame_ && same_size_ >= kSettled; }
   // Shows the frame and waits for the next one: until the display is ready if the driver waits for it, else 1/60 s.
-  // `changed`: the parts that differ from the last frame, for a window that keeps it.
-  void show_frame(const std::vector<Viewport>& changed);
   void show_frame();
   // Saves the frame as a PNG file and shows it. Errors: the file exists and `overwrite` is false; it cannot be written.
   Status save_frame(const std::string& path, bool overwrite);
@@ -58,14 +52,8 @@ class Window {
  private:
   explicit Window(GLFWwindow* window) : window_(window) {}
   bool display_sets_pace(const Rgb& empty);
-  bool has_settled();
-
-  static constexpr int kSettled = 10;  // frames of the same size
 
   GLFWwindow* window_;
-  bool keeps_frame_ = false;
-  Viewport settled_;   // size of the last frame
-  int same_size_ = 0;  // frames since it has changed
   bool paced_by_display_ = false;
   std::int64_t next_frame_ns_ = 0;
 };

@@ -3,10 +3,11 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <iterator>
 #include <optional>
 #include <utility>
 
-#include "rendering/panels/scene_overlay.h"
+#include "rendering/panels/panel.h"
 #include "scenes/scene/scene.h"
 
 namespace palpate {
@@ -16,19 +17,21 @@ namespace fs = std::filesystem;
 
 constexpr const char* kPictureHelp[] = {
     "The probe presses the same block with several models at once; the sentence at the top says which one to take.",
-    "JND: the smallest difference of force that a hand can feel, 0.065 N plus 6 % of the force. Grey band: one JND to "
-    "either side of the reference. A hand cannot feel the difference between the reference and a curve in the band.",
-    "Green: the reference, the true or the recorded force. Other colours: one for each method; hollow marks: the "
-    "paper of 2009. In the cut of a block: the error, from light (0) to green (1 JND), magenta with a halo above; the "
-    "arrows are the forces of the model and, narrow, of the truth.",
+    "JND: the difference of force that people notice in three of four trials; 0.065 N + 6.33 % of the force is the "
+    "line "
+    "of Hoever & Harders (2009), below their measured points. Grey band: one JND to either side of the reference.",
+    "Green: the truth, a true or recorded force. Other colours: one for each method; hollow marks: the paper of 2009. "
+    "In "
+    "the cut of a block: the error of this press, from white (0) over yellow to dark red (1 JND), violet with a ring "
+    "above; the arrows are the forces of the model and, narrow, of the truth.",
     "Centres: the points that a radial basis function model is made of. More centres cost time. They mostly bring more "
     "of a press within the JND (the column % in JND), but the largest errors (99 %) may grow."};
 
 constexpr std::pair<int, const char*> kKeyNames[] = {
-    {GLFW_KEY_SPACE, "Space"},        {GLFW_KEY_HOME, "Home"},   {GLFW_KEY_BACKSPACE, "Backspace"},
-    {GLFW_KEY_ESCAPE, "Esc"},         {GLFW_KEY_UP, "Up"},       {GLFW_KEY_DOWN, "Down"},
-    {GLFW_KEY_LEFT, "Left"},          {GLFW_KEY_RIGHT, "Right"}, {GLFW_KEY_PAGE_UP, "Page Up"},
-    {GLFW_KEY_PAGE_DOWN, "Page Down"}};
+    {GLFW_KEY_SPACE, "Space"},   {GLFW_KEY_HOME, "Home"},   {GLFW_KEY_BACKSPACE, "Backspace"},
+    {GLFW_KEY_ESCAPE, "Esc"},    {GLFW_KEY_UP, "Up"},       {GLFW_KEY_DOWN, "Down"},
+    {GLFW_KEY_LEFT, "Left"},     {GLFW_KEY_RIGHT, "Right"}, {GLFW_KEY_PAGE_UP, "PgUp"},
+    {GLFW_KEY_PAGE_DOWN, "PgDn"}};
 
 // The room of a dialog: the width of the picture, so that the panel stays visible beside it.
 ImVec2 dialog_room() { return {lay_out(ImGui::GetIO().DisplaySize).scene.size.x, ImGui::GetIO().DisplaySize.y}; }
@@ -56,7 +59,7 @@ bool list_entry(const std::string& text, bool selected = false, bool enabled = t
   return chosen || (enabled && ImGui::IsItemFocused() && enter_pressed());
 }
 
-// Explains the picture, and lists the commands in two columns.
+// Explains the picture, and lists the commands in two columns, in one with large texts.
 void draw_help(ViewState& view, const std::vector<WindowCommand>& commands) {
   if (!begin_dialog("Help", view.dialogs.help)) return;
   const float unit = ImGui::GetFontSize(), all = dialog_room().x;
@@ -65,15 +68,15 @@ void draw_help(ViewState& view, const std::vector<WindowCommand>& commands) {
     keys = std::max(keys, ImGui::CalcTextSize(shown_keys(command).c_str()).x);
     text = std::max(text, ImGui::CalcTextSize(command.help.c_str()).x);
   }
-  text = std::min(text, 0.5F * all - 4.0F * unit - keys);
-  ImGui::PushTextWrapPos(0.9F * all);
-  for (const char* sentence : kPictureHelp) ImGui::TextWrapped("%s", sentence);
-  ImGui::PopTextWrapPos();
+  const float half = 0.5F * all - 3.0F * unit - keys;
+  const bool one = half < 12.0F * unit;
+  text = std::min(text, one ? all - 5.0F * unit - keys : half);
+  for (const char* sentence : kPictureHelp) ImGui::TextUnformatted(in_lines(sentence, all - 4.0F * unit).c_str());
   ImGui::Separator();
-  if (ImGui::BeginTable("keys", 4, ImGuiTableFlags_NoSavedSettings)) {
-    for (const float width : {keys + 0.5F * unit, text, keys + 0.5F * unit, text})
-      ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthFixed, width);
-    const std::size_t rows = (commands.size() + 1) / 2;
+  if (ImGui::BeginTable("keys", one ? 2 : 4, ImGuiTableFlags_NoSavedSettings)) {
+    for (int column = 0; column < (one ? 2 : 4); ++column)
+      ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthFixed, column % 2 == 0 ? keys + 0.5F * unit : text);
+    const std::size_t rows = one ? commands.size() : (commands.size() + 1) / 2;
     for (std::size_t row = 0; row < rows; ++row) {
       for (std::size_t i = row; i < commands.size(); i += rows) {
         ImGui::TableNextColumn();
@@ -87,23 +90,40 @@ void draw_help(ViewState& view, const std::vector<WindowCommand>& commands) {
   ImGui::End();
 }
 
-void draw_scene_list(const LiveSession& session, ViewState& view, const OverlayActions& actions) {
+// The scenes with a material, in the order of what they show.
+void draw_scene_list(const WindowView& shown, ViewState& view, const WindowActions& actions) {
   if (!begin_dialog("Scenes", view.dialogs.scene_list)) return;
-  const auto names = scene_names();
-  for (const std::string& name : names ? *names : std::vector<std::string>{}) {
-    const auto scene = load_scene(name);
-    // The scene of the study has no block.
-    if (!scene || name == "jnd_study") continue;
-    if (list_entry(scene->title + "###" + name, name == session.scene().name)) {
+  static const std::vector<Scene> scenes = [] {
+    std::vector<Scene> all;
+    const auto names = scene_names();
+    for (const std::string& name : names ? *names : std::vector<std::string>{})
+      if (auto scene = load_scene(name); scene && scene->material && scene->order > 0) all.push_back(std::move(*scene));
+    std::ranges::stable_sort(all, {}, &Scene::order);
+    return all;
+  }();
+  for (const Scene& scene : scenes) {
+    if (list_entry(scene.title + "###" + scene.name, scene.name == shown.scene)) {
       view.dialogs.scene_list = false;
-      actions.use_scene(name);
+      actions.use_scene(scene.name);
     }
-    tip(scene->description.c_str());
+    tip(scene.description.c_str());
+    ImGui::SameLine(11.0F * ImGui::GetFontSize());
+    ImGui::TextDisabled("%s", scene.shows.c_str());
   }
   ImGui::End();
 }
 
-void draw_view_list(ViewState& view, const OverlayActions& actions) {
+void draw_export_list(ViewState& view, const WindowActions& actions) {
+  if (!begin_dialog("Export", view.dialogs.export_list)) return;
+  for (int i = 0; i < static_cast<int>(std::size(kExports)); ++i) {
+    if (!list_entry(kExports[i], i == 0)) continue;
+    view.dialogs.export_list = false;
+    actions.save(i);
+  }
+  ImGui::End();
+}
+
+void draw_view_list(ViewState& view, const WindowActions& actions) {
   if (!begin_dialog("View", view.dialogs.view_list)) return;
   for (const WindowChoice& choice : actions.choices()) {
     if (choice.names.empty()) continue;
@@ -116,8 +136,6 @@ void draw_view_list(ViewState& view, const OverlayActions& actions) {
     }
     ImGui::PopID();
   }
-  ImGui::Checkbox("Arrows show ten times the difference (X)", &view.exaggerated);
-  ImGui::Checkbox("All figures of the loop, and its faults (L)", &view.details);
   ImGui::SetNextItemWidth(10.0F * ImGui::GetFontSize());
   ImGui::SliderFloat("text size (+, -)", &view.settings.text_size, kSmallestText, kLargestText, "%.1f");
   ImGui::End();
@@ -152,7 +170,7 @@ std::string recording_roles_words(const RecordingRoles& roles) {
                                : ", and tests them on the other.");
 }
 
-void draw_recording_roles(ViewState& view, const OverlayActions& actions) {
+void draw_recording_roles(ViewState& view, const WindowActions& actions) {
   RecordingRoles& roles = view.dialogs.recording_roles;
   bool open = roles.any();
   if (!begin_dialog(roles.problem.empty() ? "Recordings" : "Not a recording", open)) return;
@@ -177,7 +195,7 @@ void draw_recording_roles(ViewState& view, const OverlayActions& actions) {
 }
 
 // Enters a folder, or opens a file. Returns whether `path` was a file.
-bool pick(FilePicker& picker, const fs::path& path, const OverlayActions& actions) {
+bool pick(FilePicker& picker, const fs::path& path, const WindowActions& actions) {
   std::error_code missing;
   if (!fs::is_directory(path, missing)) {
     if (!path.empty()) actions.open(path.string());
@@ -189,7 +207,7 @@ bool pick(FilePicker& picker, const fs::path& path, const OverlayActions& action
   return false;
 }
 
-void draw_file_picker(ViewState& view, const OverlayActions& actions) {
+void draw_file_picker(ViewState& view, const WindowActions& actions) {
   FilePicker& picker = view.dialogs.picker;
   if (!begin_dialog("Open a file", view.dialogs.file_list)) return picker.folder.clear();
   std::error_code error;
@@ -218,7 +236,7 @@ void draw_file_picker(ViewState& view, const OverlayActions& actions) {
   if (chosen && pick(picker, *chosen, actions)) view.dialogs.file_list = false;
 }
 
-void draw_device_list(ViewState& view, const std::string& in_use, const OverlayActions& actions) {
+void draw_device_list(ViewState& view, const std::string& in_use, const WindowActions& actions) {
   if (!begin_dialog("Device", view.dialogs.device_list)) return;
   if (view.devices.empty()) ImGui::TextDisabled("looking for devices ...");
   for (const DeviceDescription& device : view.devices) {
@@ -258,10 +276,12 @@ const std::string& shown_label(const WindowCommand& command) {
   return other ? command.label_on : command.label;
 }
 
-bool command_button(const WindowCommand& command) {
+bool command_button(const WindowCommand& command, float side) {
   const bool on = command.on && command.on();
   if (on) ImGui::PushStyleColor(ImGuiCol_Button, ImGui::GetStyle().Colors[ImGuiCol_ButtonActive]);
-  const bool pressed = ImGui::Button(shown_label(command).c_str());
+  const std::string& label = shown_label(command);
+  const float width = ImGui::CalcTextSize(label.c_str()).x + 2.0F * ImGui::GetStyle().FramePadding.x;
+  const bool pressed = ImGui::Button(label.c_str(), {std::max(side, width), side});
   if (on) ImGui::PopStyleColor();
   tip((command.help + " (" + shown_keys(command) + ")").c_str());
   return pressed;
@@ -284,11 +304,12 @@ std::vector<std::string> pickable_files(const std::string& folder) {
   return names;
 }
 
-void draw_dialogs(const LiveSession& session, ViewState& view, const OverlayActions& actions) {
+void draw_dialogs(const WindowView& shown, ViewState& view, const WindowActions& actions) {
   draw_file_picker(view, actions);
-  draw_device_list(view, session.device_name(), actions);
-  draw_scene_list(session, view, actions);
+  draw_device_list(view, shown.health.device_name, actions);
+  draw_scene_list(shown, view, actions);
   draw_view_list(view, actions);
+  draw_export_list(view, actions);
   draw_recording_roles(view, actions);
   draw_help(view, *actions.commands);
 }

@@ -2,16 +2,14 @@
 //
 //   attract   the simulated hand presses the block and the best model with one stroke; then the same stroke is shown
 //             again with the worst model, and so on; a sentence invites to play
-//   guess     a description of the model of this round; would a hand notice a difference? The blocks cannot be pressed
-//   press     without a force device: 15 s with one stroke on both blocks and a live plot of the difference;
-//             with a force device: the visitor compares two blocks and answers
-//   reveal    the press with the largest difference in slow motion (ExhibitReveal), then the result
-//   score     the visitor's score and a summary
+//   press     two blocks without names, and a live plot of their difference; which one is the computer's?
+//   reveal    the press with the largest difference in slow motion (ExhibitReveal), then names and result
+//   score     all models judged by the visitor's own presses; then one sentence to take home, and the score of the day
 //
 // A key presses the button that shows it; the 1 and 2 of the keypad count as 1 and 2, its Enter and Space as Enter. If
 // there is no button 2, 1 and Enter both press the only button. L changes the language. The tool can touch the block
 // only in the screens attract and press. After `stay_s` without a movement the exhibit starts again; a countdown shows
-// the last `warn_s`. Ctrl+Shift+T shows the tally of the day and the health of the loop to the host.
+// the last `warn_s`. Ctrl+Shift+T shows the health of the loop to the host.
 //
 // Thread guarantee: the window's thread.
 #pragma once
@@ -21,18 +19,13 @@
 #include <vector>
 
 #include "engine/tick/jnd.h"
-#include "rendering/panels/panel_parts.h"
-#include "rendering/panels/window_view.h"
-#include "rendering/picture/block_view.h"
-#include "rendering/ui/plot.h"
-#include "rendering/ui/ui_style.h"
+#include "rendering/panels/panel.h"
 #include "scenes/live/exhibit_game.h"
-#include "scenes/live/live_session.h"
 
 namespace palpate {
 
 // The reveal of a round: the visitor's press with the largest difference, in slow motion. The blocks show its motion
-// and dents. Two arrows beside each other show the forces, in front of a band of one JND about the first. Then the
+// and dents. Two arrows beside each other show the forces, in front of a band of one JND about the true one. Then the
 // motion goes back to the moment of the largest difference and stands still there.
 class ExhibitReveal {
  public:
@@ -42,13 +35,13 @@ class ExhibitReveal {
   void start(const ExhibitTrace& trace, const JndLine& jnd, double slowness, double now_s);
   bool done(double now_s) const noexcept { return columns_since_start(now_s) >= end() + kBack; }
   Moment at(double now_s) const noexcept;
-  // The second force, N: first_N + over_jnd JND(first_N). It is that of the mean over 50 ms that decides the round.
-  double second_N(const Moment& moment) const noexcept { return moment.first_N + moment.over_jnd * jnd_N(moment); }
+  // The force of the model, N: that of the mean over 50 ms of the difference.
+  double model_N(const Moment& moment) const noexcept { return moment.true_N + moment.over_jnd * jnd_N(moment); }
 
-  // Draws both arrows, the first at the left if `first_is_left`, and the band into `area`. All moments of the press
-  // have the same scale. On the way back to the largest difference, the arrows grow until they fill the area.
-  void draw_arrows(const UiStyle& style, const SceneArea& area, double now_s, const Rgb& first, const Rgb& second,
-                   bool first_is_left) const;
+  // Draws both arrows and the band into `area`. All moments of the press have the same scale. On the way back to the
+  // largest difference, the arrows grow until they fill the area. `newtons`: the words of a force.
+  void draw_arrows(const UiStyle& style, const SceneArea& area, double now_s, const Rgb& truth, const Rgb& computer,
+                   bool computer_is_left, const std::function<std::string(double)>& newtons) const;
 
  private:
   static constexpr double kBack = 0.25 / ExhibitTrace::kColumn_s;  // duration of the way back, in columns
@@ -60,7 +53,7 @@ class ExhibitReveal {
   // Share of the way back from the end of the press to the largest difference, 0 to 1, with a smooth start and end.
   double way_back(double now_s) const noexcept;
   double playhead(double now_s) const noexcept;  // index into moments_, with a fraction
-  double jnd_N(const Moment& moment) const noexcept { return jnd_.at(moment.first_N); }
+  double jnd_N(const Moment& moment) const noexcept { return jnd_.at(moment.true_N); }
 
   std::vector<Moment> moments_{1};  // one for each column of the trace
   std::size_t largest_at_ = 0;
@@ -69,7 +62,7 @@ class ExhibitReveal {
 };
 
 struct ExhibitTimes {
-  double press_s = ExhibitGame::kPress_s;
+  double press_s = 15.0;  // the longest stroke of the invitation
   double stay_s = 60.0;   // time without a movement until the exhibit starts again
   double warn_s = 15.0;   // countdown at the end of it
   double slowness = 4.0;  // of the reveal
@@ -77,62 +70,57 @@ struct ExhibitTimes {
 
 class Exhibit {
  public:
-  // `languages`: at least one. `tally_folder`: folder of the tally files, one per day; empty: no tally is stored.
+  // `languages`: at least one. `tally_folder`: folder of the files of the days' scores; empty: none is stored.
   void set_up(std::vector<ExhibitWords> languages, const std::string& tally_folder, const ExhibitTimes& times);
 
   // Call it once a frame. Returns whether the visitor has just left, so that the exhibit started again.
-  bool update(LiveSession& session, ViewState& view);
+  bool update(const WindowView& shown, ViewState& view, const WindowActions& actions);
   // `key`: of GLFW.
-  void press_key(int key, const LiveSession& session);
+  void press_key(int key, const WindowView& shown);
   void toggle_host() noexcept { host_ = !host_; }
-  // Moves the tool out of the block.
-  static void let_go(LiveSession& session);
-  // Draws the screen in the panel's area, and the names at the blocks.
-  void draw(const LiveSession& session, const WindowView& shown, const BlockView& blocks, const UiStyle& style,
-            const WindowLayout& layout);
-
-  // The blocks of a stroke that is shown again, in attract or in the reveal; else empty.
-  std::vector<BlockPose> shown_poses(const LiveSession& session, const WindowView& shown, Theme theme) const;
+  void draw(const WindowView& shown, const BlockView& blocks, const UiStyle& style, const WindowLayout& layout);
+  // The two blocks, the left one first; empty: too few models are ready.
+  std::vector<BlockPose> shown_poses(const WindowView& shown, Theme theme) const;
 
   const ExhibitGame& game() const noexcept { return game_; }
-  const ExhibitTrace& attract_trace() const noexcept { return shows_worst() ? worst_.trace : best_.trace; }
+  const ExhibitTrace& attract_trace() const noexcept { return shows_worst() ? worst_ : best_; }
   // Whether the last stroke is shown again with the worst model.
   bool shows_worst() const noexcept { return game_.state() == ExhibitGame::State::attract && repeats_; }
   const ExhibitTally& tally() const noexcept { return tally_; }
   // The middles of the buttons of the last frame, by their keys.
   const std::map<std::string, ImVec2>& buttons() const noexcept { return buttons_; }
+  // Whether all of the last screen is above its foot.
+  bool fits() const noexcept { return fits_; }
   // The sentences of the last frame, from the top.
   const std::vector<std::string>& said() const noexcept { return said_; }
 
  private:
   struct Screens;
-  void forget(LiveSession& session, ViewState& view);
-  void read_ticks(const LiveSession& session);
-  void choose_attraction(const LiveSession& session);
+  void forget(ViewState& view, const WindowActions& actions);
+  void read_ticks(const WindowView& shown);
+  void choose_attraction(const WindowView& shown);
   void forget_strokes();
-  void note_device(const LiveSession& session);
-  void begin_reveal(const LiveSession& session);
-  bool reveal_is_done(const LiveSession& session) const;
-  std::string tally_path() const;  // today's file; empty: no tally is stored
-  void begin(const LiveSession& session);
-  // The two forces on the screen; null: too few models are ready.
-  const ExhibitRound* pair() const noexcept;
-  // The colour of the first or the second of the pair.
-  Rgb colour_of(bool first, const WindowView& shown, Theme theme) const;
-  // Whether the first of the pair is the left block. A reference is the right block.
-  bool first_is_left() const { return pair()->first.has_value(); }
+  void note_device(const WindowView& shown);
+  void begin_reveal(const WindowView& shown);
+  bool reveal_is_done(const WindowView& shown) const;
+  std::string tally_path() const;  // today's file; empty: none is stored
+  void begin(const WindowView& shown);
+  bool knows_pair() const noexcept { return game_.state() != ExhibitGame::State::attract || ready_; }
+  const ExhibitLineUp& line_up() const noexcept {
+    return game_.state() == ExhibitGame::State::attract ? attraction_ : game_.line_up();
+  }
+  std::size_t level() const noexcept;  // of the model on the screen
+  bool computer_is_left() const noexcept;
+  const ExhibitModel& computer() const { return line_up().levels[level()]; }
+  Rgb colour_of_truth(const WindowView& shown, Theme theme) const;
   const ExhibitWords& words() const { return languages_[language_]; }
 
   ExhibitGame game_{1};  // seed
   ExhibitTimes times_;
-  // In the state attract: a pair of forces, and the trace of one stroke.
-  struct Attraction {
-    ExhibitRound round;
-    ExhibitTrace trace;
-  };
-  Attraction best_, worst_;
-  bool ready_ = false;    // both are known
-  bool repeats_ = false;  // the stroke is shown again with the worst
+  ExhibitLineUp attraction_;   // of the state attract
+  ExhibitTrace best_, worst_;  // of one stroke
+  bool ready_ = false;         // `attraction_` is known
+  bool repeats_ = false;       // the stroke is shown again with the worst
   ExhibitReveal reveal_;
   std::vector<ExhibitWords> languages_{1};
   std::size_t language_ = 0;
@@ -145,7 +133,9 @@ class Exhibit {
   double moved_s_ = -1e9;     // loop time of the visitor's last action
   double seen_s_ = 0.0;       // loop time of the last processed tick
   double device_at_m_ = 0.0;  // position of the device's tool at its last movement
-  bool revealed_ = false;     // the reveal of this round has begun, and its result is in the tally
+  bool farewell_ = false;     // the second screen of the score
+  bool fits_ = true;
+  bool revealed_ = false;  // the reveal of this round has begun, and its result is in the tally
 };
 
 }  // namespace palpate

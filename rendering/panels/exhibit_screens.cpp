@@ -4,14 +4,13 @@
 
 #include "engine/base/text.h"
 #include "rendering/panels/exhibit.h"
-#include "rendering/panels/panel.h"
 
 namespace palpate {
 namespace {
 
 using State = ExhibitGame::State;
 
-constexpr double kMost_jnd = 4.0;  // fixed range of the axis, so that rounds are comparable
+constexpr double kLeastRange_jnd = 4.0;  // of the axis, so that rounds are comparable
 
 bool pointer_moved() {
   const ImGuiIO& io = ImGui::GetIO();
@@ -23,7 +22,6 @@ bool pointer_moved() {
 struct Exhibit::Screens {
   Exhibit& exhibit;
   ExhibitGame& game;
-  const LiveSession& session;
   const WindowView& shown;
   const BlockView& blocks;
   const UiStyle& style;
@@ -33,7 +31,7 @@ struct Exhibit::Screens {
   // The end of the panel above the foot.
   float bottom() const { return layout.panel.at.y + layout.panel.size.y - 2.6F * body(); }
   float body() const { return height_of(style.fonts().body); }
-  double now_s() const { return session.newest().loop_time_s; }
+  double now_s() const { return shown.health.newest.loop_time_s; }
   void space(float lines) const { ImGui::Dummy({1.0F, lines * body()}); }
   static std::string centres_of(const ExhibitModel& model) { return std::to_string(model.centres); }
   // The ending of the keys of the texts about a model. A trend without a correction has no centres.
@@ -42,26 +40,20 @@ struct Exhibit::Screens {
   }
   Rgb colour_of(const ExhibitModel& model) const { return slot_colour(shown.models, model.slot, style.theme()); }
 
-  // The number with the digits that a reader needs.
-  std::string number(double value) const {
-    if (value <= 0.0) return "0";
-    std::string text = fixed(std::max(0.01, value), value < 1.0 ? 2 : 1);
+  std::string localised(std::string text) const {
     if (const std::size_t at = text.find('.'); at != std::string::npos) text.replace(at, 1, words()("decimal"));
     return text;
   }
-
-  std::string verdict() const {
-    const ExhibitRound& round = game.round();
-    if (round.is_catch()) return words()("verdict_catch");
-    if (round.near_jnd()) return words()("verdict_edge");
-    return words()(round.noticed() ? "verdict_noticed" : "verdict_unnoticed");
+  // The number with the digits that a reader needs.
+  std::string number(double value) const {
+    return value <= 0.0 ? "0" : localised(fixed(std::max(0.01, value), value < 1.0 ? 2 : 1));
   }
+  std::string newtons(double force_N) const { return localised(fixed(force_N, force_N < 0.95 ? 2 : 1)) + " N"; }
 
   void say(const std::string& text) {
     ImGui::TextUnformatted(in_lines(text, ImGui::GetContentRegionAvail().x).c_str());
     exhibit.said_.push_back(text);
   }
-
   void say_in(ImFont* font, const Rgb& colour, const std::string& text) {
     ImGui::PushStyleColor(ImGuiCol_Text, paint(colour));
     ImGui::PushFont(font);
@@ -70,10 +62,6 @@ struct Exhibit::Screens {
     ImGui::PopStyleColor();
   }
   void say_quietly(const std::string& text) { say_in(style.fonts().body, style.colours().quiet, text); }
-
-  void say_round() {
-    say_quietly(words()("round", std::to_string(game.number()), std::to_string(game.rounds().size())));
-  }
 
   // Whether the button, which is high enough for a finger, or the key in its corner was pressed.
   bool button(const std::string& text, const std::string& key, ImVec2 size = {-1.0F, 0.0F}, bool down = false) {
@@ -90,24 +78,30 @@ struct Exhibit::Screens {
     exhibit.buttons_[key] = {0.5F * (low.x + corner.x), 0.5F * (low.y + corner.y)};
     return clicked || exhibit.pressed_ == key;
   }
+  // Two buttons beside each other. Returns 1 or 2 where one was pressed, else 0.
+  int pair_of_buttons(const char* left, const char* left_key, const char* right, const char* right_key, int down = 0) {
+    const ImVec2 half(0.5F * (ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ItemSpacing.x), 0.0F);
+    const bool one = button(words()(left), left_key, half, down == 1);
+    ImGui::SameLine();
+    const bool two = button(words()(right), right_key, half, down == 2);
+    return one ? 1 : two ? 2 : 0;
+  }
 
-  void draw_difference(const ExhibitTrace& trace) {
-    // Outside the plot, where no curve crosses them.
+  // The difference of the right block from the left one, on an axis that shows all of it.
+  void draw_difference(const ExhibitTrace& trace, double seconds) {
     say_quietly(words()("axis_difference"));
     const double largest = trace.largest_over_jnd();
     say_quietly(largest > 0.0 ? words()("so_far", number(largest)) : words()("in_band"));
+    const double range = std::max(kLeastRange_jnd, round_up(1.05 * largest));
     ImGui::PushFont(style.fonts().body);  // of the axes
-    const float height = std::max(bottom() - ImGui::GetCursorScreenPos().y, 6.0F * body());
+    const float height = bottom() - ImGui::GetCursorScreenPos().y;
     const LivePlot plot(style, {ImGui::GetContentRegionAvail().x, height},
-                        {{0.0, exhibit.times_.press_s}, {-kMost_jnd, kMost_jnd}, "s", ""});
+                        {{0.0, seconds}, {-range, range}, "s", "", false, 0.0});
     ImGui::PopFont();
     plot.jnd_band(-1.0, 1.0);
-    plot.level(0.0, ink(reference_colour(style.theme())), 4.0F * style.scale());
     std::vector<ImVec2> points;
     const auto flush = [&] {
-      // In attract without the colour of a model, which round 1 shows again.
-      const Rgb colour = game.state() == State::attract ? style.colours().text : colour_of(exhibit.pair()->second);
-      plot.line(points, ink(colour), 4.0F * style.scale());
+      plot.line(points, ink(style.colours().text), 4.0F * style.scale());
       points.clear();
     };
     for (std::size_t i = 0; i < trace.columns().size(); ++i) {
@@ -116,10 +110,29 @@ struct Exhibit::Screens {
         flush();
       } else {
         points.emplace_back(plot.x_px(static_cast<double>(i) * ExhibitTrace::kColumn_s),
-                            plot.y_px(std::clamp(over_jnd, -kMost_jnd, kMost_jnd)));
+                            plot.y_px(exhibit.computer_is_left() ? -over_jnd : over_jnd));
       }
     }
     flush();
+  }
+
+  // What a model remembers: dots on the curve of a press.
+  void draw_moments(const ExhibitModel& model, const ImVec2& size) const {
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    ImDrawList& list = *ImGui::GetWindowDrawList();
+    const auto point = [&](float share) {
+      const float rise = std::sin(3.1416F * std::pow(share, 0.7F));
+      return ImVec2(at.x + share * size.x, at.y + (0.95F - 0.85F * rise * rise) * size.y);
+    };
+    std::vector<ImVec2> curve;
+    for (int i = 0; i <= 60; ++i) curve.push_back(point(static_cast<float>(i) / 60.0F));
+    list.AddPolyline(curve.data(), static_cast<int>(curve.size()), ink(style.colours().quiet), 0, 2.0F);
+    const int dots = std::max(model.centres, 1);
+    const float radius = dots > 50 ? 0.13F * body() : 0.22F * body();
+    for (int i = 0; i < dots; ++i)
+      list.AddCircleFilled(point((static_cast<float>(i) + 0.5F) / static_cast<float>(dots)), radius,
+                           ink(style.colours().text));
+    ImGui::Dummy(size);
   }
 
   void draw_attract() {
@@ -127,11 +140,11 @@ struct Exhibit::Screens {
     space(0.3F);
     say_quietly(words()("attract_more"));
     space(0.6F);
-    if (exhibit.pair() == nullptr) return draw_learning();
-    if (button(words()("play"), "1")) return exhibit.begin(session);
+    if (!exhibit.knows_pair()) return draw_learning();
+    if (button(words()("play"), "1")) return exhibit.begin(shown);
     space(0.6F);
     say(words()(exhibit.shows_worst() ? "attract_worst" : "attract_best"));
-    draw_difference(exhibit.attract_trace());
+    draw_difference(exhibit.attract_trace(), exhibit.times_.press_s);
   }
 
   void draw_learning() {
@@ -143,107 +156,113 @@ struct Exhibit::Screens {
     ImGui::ProgressBar(done / all, {-1.0F, 0.8F * body()}, "");
   }
 
-  void draw_guess() {
-    say_round();
-    const ExhibitModel& model = game.round().second;
-    say(words()("hint_" + kind_of(model), centres_of(model)));
-    space(0.6F);
-    say(words()("question_guess"));
-    space(0.4F);
-    const ImVec2 half(-1.0F, 0.5F * (bottom() - ImGui::GetCursorScreenPos().y - ImGui::GetStyle().ItemSpacing.y));
-    ImGui::PushFont(style.fonts().big);
-    if (button(words()("yes"), "1", half)) game.guess(true);
-    if (button(words()("no"), "2", half)) game.guess(false);
-    ImGui::PopFont();
-  }
-
   void draw_press() {
-    say_round();
-    if (!game.has_force()) {
-      say(words()("press"));
-      say_quietly(words()("press_how"));
-      space(0.6F);
-      return draw_difference(game.trace());
+    say_quietly(words()("round", std::to_string(game.level() + 1), std::to_string(game.rounds().size())));
+    say(words()("hint_" + kind_of(game.computer()), centres_of(game.computer())));
+    draw_moments(game.computer(), {ImGui::GetContentRegionAvail().x, 2.4F * body()});
+    if (game.has_force()) {
+      const int chosen = pair_of_buttons("left", "←", "right", "→", game.chosen_left() ? 1 : 2);
+      if (chosen != 0) game.choose(chosen == 1);
     }
-    say(words()("question_feel"));
-    say_quietly(words()(game.pressed_both() ? "answer" : "feel_both"));
-    space(0.4F);
-    const ImVec2 half(0.5F * (ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ItemSpacing.x), 0.0F);
-    if (button(words()("block_1"), "1", half, game.chosen() == 1)) game.choose(1);
-    ImGui::SameLine();
-    if (button(words()("block_2"), "2", half, game.chosen() == 2)) game.choose(2);
-    if (!game.pressed_both()) return;
-    space(0.8F);
-    if (button(words()("differ"), words()("key_differ"))) return game.answer(true);
-    if (button(words()("same"), words()("key_same"))) game.answer(false);
-  }
-
-  void draw_key(const ExhibitModel& model, const char* block) {
-    say_in(style.fonts().heading, text_colour(colour_of(model), style.theme()),
-           words()(block) + ": " + words()("name_" + kind_of(model), centres_of(model)));
+    say(words()(game.can_answer() ? game.has_force() ? "question_felt" : "question" : "press"));
+    if (!game.can_answer()) {
+      say_quietly(words()(game.has_force() ? "feel_how" : "press_how"));
+    } else if (const int said = pair_of_buttons("left", "1", "right", "2"); said != 0) {
+      return game.answer(said == 1);
+    }
+    constexpr double kAxis_s = 10.0;
+    draw_difference(game.trace(), std::max(kAxis_s, game.trace().seconds()));
   }
 
   void draw_slow_motion() {
     const float line = body();
-    const ImVec2 at(ImGui::GetCursorScreenPos().x, ImGui::GetCursorScreenPos().y + line);
-    const ImVec2 size(ImGui::GetContentRegionAvail().x, std::max(bottom() - 1.6F * line - at.y, 4.0F * line));
-    const Theme theme = style.theme();
-    exhibit.reveal_.draw_arrows(style, {at, size}, now_s(), exhibit.colour_of(true, shown, theme),
-                                exhibit.colour_of(false, shown, theme), exhibit.first_is_left());
+    const ImVec2 at(ImGui::GetCursorScreenPos().x, ImGui::GetCursorScreenPos().y + 0.6F * line);
+    const ImVec2 size(ImGui::GetContentRegionAvail().x, std::max(bottom() - line - at.y, 4.0F * line));
+    exhibit.reveal_.draw_arrows(style, {at, size}, now_s(), exhibit.colour_of_truth(shown, style.theme()),
+                                colour_of(game.computer()), game.round().computer_is_left,
+                                [this](double force_N) { return newtons(force_N); });
   }
 
   void draw_reveal() {
-    const ExhibitRound& round = game.round();
-    if (!exhibit.reveal_is_done(session)) {
+    if (!exhibit.reveal_is_done(shown)) {
       say(words()("slow_motion", fixed(exhibit.times_.slowness, 0)));
       space(0.2F);
       say_quietly(words()("slow_motion_how"));
       return draw_slow_motion();
     }
-    const bool edge = round.near_jnd() && !round.is_catch();
-    say_in(style.fonts().big, style.colours().text, words()(edge ? "edge" : round.correct() ? "right" : "wrong"));
-    say(verdict());
+    const bool right = game.round().correct();
+    say_in(style.fonts().big, style.colours().text, words()(right ? "found" : "fooled"));
+    const double largest = game.trace().largest_over_jnd();
+    say(words()(largest > 1.25 ? "verdict_noticed" : largest < 0.8 ? "verdict_unnoticed" : "verdict_edge"));
     space(0.4F);
-    if (button(words()(game.number() < game.rounds().size() ? "next" : "to_score"), "Enter")) return game.go_on();
-    if (game.has_force()) {  // shows which model had which key
-      space(0.4F);
-      draw_key(*round.first, "block_1");
-      draw_key(round.second, "block_2");
-    }
+    if (button(words()(game.level() + 1 < game.rounds().size() ? "next" : "to_score"), "Enter")) return game.go_on();
     draw_slow_motion();
   }
 
-  void draw_bar(const ExhibitRound& round) {
-    const std::string name = round.is_catch() ? "name_catch" : "name_" + kind_of(round.second);
-    say_quietly(words()(name, centres_of(round.second)) + ": " + number(round.largest_over_jnd) + ", " +
-                words()(round.correct() ? "row_right" : "row_wrong"));
-    const float height = 0.8F * body();
+  // The largest difference of a level in all presses, as a bar beside the band of one JND.
+  void draw_bar(std::size_t level, double range) {
+    const ExhibitModel& model = game.line_up().levels[level];
+    const double largest = game.largest_over_jnd(level);
+    say_quietly(words()("name_" + kind_of(model), centres_of(model)) + ": " + number(largest) + ", " +
+                words()(game.rounds()[level].correct() ? "row_found" : "row_fooled"));
+    const float height = 0.8F * body(), all = ImGui::GetContentRegionAvail().x;
     const ImVec2 at = ImGui::GetCursorScreenPos();
-    const float jnd = ImGui::GetContentRegionAvail().x / static_cast<float>(kMost_jnd);
-    const auto length = static_cast<float>(std::clamp(round.largest_over_jnd, 0.02, kMost_jnd));
+    const auto length = [&](double over_jnd) { return all * static_cast<float>(over_jnd / range); };
     ImDrawList& list = *ImGui::GetWindowDrawList();
-    list.AddRectFilled(at, {at.x + jnd, at.y + height}, ink(style.colours().band));
-    list.AddRect(at, {at.x + jnd, at.y + height}, ink(style.colours().edge));
-    list.AddRectFilled({at.x, at.y + 0.2F * height}, {at.x + length * jnd, at.y + 0.8F * height},
-                       ink(colour_of(round.second)));
+    list.AddRectFilled(at, {at.x + length(1.0), at.y + height}, ink(style.colours().band));
+    list.AddRect(at, {at.x + length(1.0), at.y + height}, ink(style.colours().edge));
+    list.AddRectFilled({at.x, at.y + 0.2F * height}, {at.x + std::max(3.0F, length(largest)), at.y + 0.8F * height},
+                       ink(colour_of(model)));
     ImGui::Dummy({1.0F, height});
   }
 
+  // How many visitors each computer has fooled today.
+  void draw_day(std::size_t level) {
+    const std::uint64_t answers = exhibit.tally_.answers[level], fooled = exhibit.tally_.fooled[level];
+    if (answers == 0) return;
+    const ExhibitModel& model = game.line_up().levels[level];
+    say_quietly(words()("name_" + kind_of(model), centres_of(model)) + ": " +
+                words()("day_of", std::to_string(fooled), std::to_string(answers)));
+    const float height = 0.8F * body(), all = ImGui::GetContentRegionAvail().x;
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    const float share = static_cast<float>(fooled) / static_cast<float>(answers);
+    ImDrawList& list = *ImGui::GetWindowDrawList();
+    list.AddRect(at, {at.x + all, at.y + height}, ink(style.colours().edge));
+    list.AddRectFilled(at, {at.x + all * share, at.y + height}, ink(colour_of(model)));
+    ImGui::Dummy({1.0F, height});
+  }
+
+  // "half a millionth of a second"
+  std::string time_words(double tick_ns) const {
+    if (tick_ns < 400.0) return words()("time_third");
+    if (tick_ns < 750.0) return words()("time_half");
+    if (tick_ns < 1500.0) return words()("time_one");
+    return words()("time_many", fixed(1e-3 * tick_ns, 0));
+  }
+
   void draw_score() {
-    const std::vector<ExhibitRound>& rounds = game.rounds();
+    const std::size_t levels = game.rounds().size();
+    if (exhibit.farewell_) return draw_farewell(levels);
     say(words()("score"));
-    say_in(style.fonts().big, style.colours().text,
-           words()("score_of", std::to_string(game.correct_answers()), std::to_string(rounds.size())));
-    space(0.4F);
-    for (const ExhibitRound& round : rounds) draw_bar(round);
+    double range = 2.0;
+    for (std::size_t i = 0; i < levels; ++i) range = std::max(range, 1.05 * game.largest_over_jnd(i));
+    for (std::size_t i = 0; i < levels; ++i) draw_bar(i, range);
     say_quietly(words()("bars"));
-    space(0.4F);
+    space(0.5F);
+    exhibit.farewell_ = button(words()("next"), "Enter");
+  }
+
+  // The sentence to take home, and the score of the day.
+  void draw_farewell(std::size_t levels) {
+    const bool hidden = game.largest_over_jnd(levels - 1) <= 1.0;
     // The time of the tick of the best model alone, as everywhere.
-    const std::string used_us = number(1e-3 * shown.models.slots[rounds.back().second.slot].tick_ns());
-    say(game.has_force() ? words()("take_home_felt", used_us)
-                         : words()("take_home", number(rounds.back().largest_over_jnd), used_us));
+    const ModelView& best = shown.models.slots[game.line_up().levels[levels - 1].slot];
+    say(words()(hidden ? "take_home" : "take_home_noticed", time_words(best.tick_ns())));
     space(0.4F);
-    if (button(words()("again"), "Enter")) exhibit.begin(session);
+    say_quietly(words()("day"));
+    for (std::size_t i = 0; i < levels; ++i) draw_day(i);
+    space(0.5F);
+    if (button(words()("again"), "Enter")) exhibit.begin(shown);
   }
 
   void draw_foot() {
@@ -259,77 +278,61 @@ struct Exhibit::Screens {
     say(words()("countdown", std::to_string(static_cast<int>(std::ceil(std::max(0.0, left_s))))));
   }
 
-  void draw_host() {
-    ImGui::SetCursorScreenPos({layout.panel.at.x + 0.4F * layout.panel.size.x, layout.panel.at.y + 2.0F});
-    ImGui::PushFont(style.fonts().body);
-    exhibit.said_.push_back(
-        words()("tally", std::to_string(exhibit.tally_.answers), std::to_string(exhibit.tally_.as_expected)));
-    ImGui::TextUnformatted((exhibit.said_.back() + "\n" + health_words(shown.health, 0.0, true).text).c_str());
-    ImGui::PopFont();
+  // The host's figures, at the upper edge of the picture.
+  void draw_host() const {
+    const std::string text = in_lines(health_words(shown.health, 0.0, true).text, layout.scene.size.x - 2.0F * body());
+    const ImVec2 size = text_size(style.fonts().body, text), at(layout.scene.at.x + body(), layout.scene.at.y + 4.0F);
+    ImDrawList& front = *ImGui::GetForegroundDrawList();
+    front.AddRectFilled({at.x - 6.0F, at.y - 2.0F}, {at.x + size.x + 6.0F, at.y + size.y + 2.0F},
+                        ink(style.colours().panel));
+    front.AddText(style.fonts().body, body(), at, ink(style.colours().text), text.c_str());
+    exhibit.said_.push_back(text);
   }
 
-  std::string name_of(bool first) const {
-    if (!first) return words()("name_computer");
-    if (exhibit.pair()->first) return words()("name_other");
-    return words()(session.comparison().reference() == ReferenceKind::measured ? "name_measured" : "name_simulated");
-  }
-
-  void draw_name(std::size_t index, std::size_t count, const std::string& text, const Rgb& colour) const {
-    const SceneArea& scene = layout.scene;
-    ImFont* font = style.fonts().heading;
-    const ImVec2 size = text_size(font, text);
-    const glm::vec2 foot = blocks.foot(index, count, {scene.size.x, scene.size.y});
-    text_at(font,
-            {scene.at.x + std::clamp(foot.x - 0.5F * size.x, 4.0F, scene.size.x - size.x - 4.0F),
-             scene.at.y + std::min(foot.y + 0.6F * size.y, scene.size.y - 1.3F * size.y)},
-            ink(colour), text);
-  }
-
-  // Says on the picture that the blocks cannot be pressed yet.
-  void draw_answer_first() const {
-    const SceneArea& scene = layout.scene;
-    const std::string& text = words()("answer_first");
-    ImFont* font = style.fonts().big;
-    const ImVec2 size = text_size(font, text, 0.9F * scene.size.x);
-    const ImVec2 at(scene.at.x + 0.5F * (scene.size.x - size.x), scene.at.y + 0.16F * scene.size.y);
-    text_at(font, at, ink(style.colours().text), text, 0.9F * scene.size.x);
-  }
-
+  // Names stand under the blocks only when the answer is given, and in the invitation.
   void draw_names() const {
-    if (exhibit.pair() == nullptr) return;
-    if (game.state() == State::guess) draw_answer_first();
-    const bool revealed = game.state() == State::reveal;
-    const bool blind = game.state() != State::attract && game.has_force() && !revealed;
-    const std::size_t count = blind ? 1 : 2;
-    const Theme theme = style.theme();
-    for (std::size_t i = 0; i < count; ++i) {
-      const bool first = (i == 0) == exhibit.first_is_left();
-      std::string text = blind ? words()(game.chosen() == 2 ? "block_2" : "block_1") : name_of(first);
-      if (blind && game.state() != State::press) text.clear();
-      if (game.has_force() && revealed) text = words()(first ? "block_1" : "block_2");
-      const Rgb colour = exhibit.colour_of(first, shown, theme);
-      draw_name(i, count, text, blind ? style.colours().text : text_colour(colour, theme));
+    if (!exhibit.knows_pair()) return;
+    for (const bool left : {true, false}) {
+      const bool is_computer = left == exhibit.computer_is_left();
+      const bool named =
+          game.state() != State::press && (game.state() != State::reveal || exhibit.reveal_is_done(shown));
+      const std::string text = !named                                          ? words()(left ? "left" : "right")
+                               : is_computer                                   ? words()("name_computer")
+                               : exhibit.line_up().truth                       ? words()("name_other")
+                               : shown.models.reference_name == "the material" ? words()("name_simulated")
+                                                                               : words()("name_measured");
+      const Rgb colour = !named        ? style.colours().text
+                         : is_computer ? text_colour(colour_of(exhibit.computer()), style.theme())
+                                       : text_colour(exhibit.colour_of_truth(shown, style.theme()), style.theme());
+      const SceneArea& scene = layout.scene;
+      ImFont* font = style.fonts().heading;
+      const ImVec2 size = text_size(font, text);
+      const glm::vec2 foot = blocks.foot(left ? 0 : 1, 2, {scene.size.x, scene.size.y});
+      text_at(font,
+              {scene.at.x + std::clamp(foot.x - 0.5F * size.x, 4.0F, std::max(4.0F, scene.size.x - size.x - 4.0F)),
+               scene.at.y + std::min(foot.y + 0.6F * size.y, scene.size.y - 1.3F * size.y)},
+              ink(colour), text);
     }
   }
 };
 
-void Exhibit::draw(const LiveSession& session, const WindowView& shown, const BlockView& blocks, const UiStyle& style,
-                   const WindowLayout& layout) {
-  if (pointer_moved()) moved_s_ = session.newest().loop_time_s;
+void Exhibit::draw(const WindowView& shown, const BlockView& blocks, const UiStyle& style, const WindowLayout& layout) {
+  if (pointer_moved()) moved_s_ = shown.health.newest.loop_time_s;
   buttons_.clear();
   said_.clear();
-  Screens screens{*this, game_, session, shown, blocks, style, layout};
-  begin_panel("visitor", layout.panel);
+  Screens screens{*this, game_, shown, blocks, style, layout};
+  begin_panel(kPanelWindow, layout.panel);
   ImGui::PushFont(style.fonts().heading);
   screens.space(0.5F);
   using Draw = void (Screens::*)();
-  constexpr Draw kScreens[] = {&Screens::draw_attract, &Screens::draw_guess, &Screens::draw_press,
-                               &Screens::draw_reveal, &Screens::draw_score};  // in the order of State
+  constexpr Draw kScreens[] = {&Screens::draw_attract, &Screens::draw_press, &Screens::draw_reveal,
+                               &Screens::draw_score};  // in the order of State
   (screens.*kScreens[static_cast<std::size_t>(game_.state())])();
   ImGui::PopFont();
+  fits_ = ImGui::GetCursorScreenPos().y < screens.bottom() + screens.body();
   screens.draw_foot();
-  if (host_) screens.draw_host();
   ImGui::End();
+  if (host_) screens.draw_host();
   screens.draw_names();
   pressed_.clear();
 }

@@ -10,7 +10,7 @@
 namespace palpate {
 namespace {
 
-void draw_centres(LiveSession& session, const ModelsView& models, ViewState& view) {
+void draw_centres(const ModelsView& models, ViewState& view, const WindowActions& actions) {
   std::vector<std::size_t> slots = models.listed();
   std::erase_if(slots, [&](std::size_t slot) { return !models.slots[slot].takes_centres; });
   const bool refitting =
@@ -26,7 +26,7 @@ void draw_centres(LiveSession& session, const ModelsView& models, ViewState& vie
   if (ImGui::SliderInt("##centres", &centres, 1, kMostCentres, "%d",
                        ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp)) {
     view.requested_centres = centres;
-    for (const std::size_t slot : slots) session.models().refit(slot, centres);
+    for (const std::size_t slot : slots) actions.refit(slot, centres);
   }
   tip("Fits every model that has centres again with this number of centres.\n"
       "Drag to the left, and watch the curves leave their band and the dots move.");
@@ -34,61 +34,9 @@ void draw_centres(LiveSession& session, const ModelsView& models, ViewState& vie
   ImGui::TextDisabled("%s", refitting ? "fits ..." : "");
 }
 
-// Bins with fewer samples have no useful standard deviation.
-constexpr std::uint64_t kFewestSamples = 20;
-
-PlotAxes axes_of_bins(const ModelsView& models) {
-  double force_N = 1.0, error_N = 0.1;
-  for (const ModelView& slot : models.slots) {
-    for (const ForceBin& bin : slot.errors.bins) {
-      if (bin.force_N.count() < kFewestSamples) continue;
-      force_N = std::max(force_N, bin.force_to_N);
-      error_N = std::max(error_N, bin.error_N.mean() + bin.error_N.deviation());
-    }
-  }
-  // The JND line is visible completely; larger maxima are cut at the top.
-  return {{0.0, force_N}, {0.0, round_up(1.6 * std::max(error_N, models.jnd.at(force_N)))}, "N", "N"};
-}
-
-void draw_slot(const LivePlot& plot, const ModelsView& models, std::size_t index, const UiStyle& style) {
-  const bool selected = index == models.selected;
-  const ModelView& slot = models.slots[index];
-  const ImU32 colour = ink(slot_colour(models, index, style.theme()));
-  const float size = style.scale();
-  std::vector<ImVec2> spread;
-  for (const ForceBin& bin : slot.errors.bins) {
-    if (bin.force_N.count() < kFewestSamples) continue;
-    const float x = plot.x_px(0.5 * (bin.force_from_N + bin.force_to_N));
-    spread.emplace_back(x, plot.y_px(bin.error_N.mean() + bin.error_N.deviation()));
-    plot.list().AddCircleFilled(spread.back(), (selected ? 4.0F : 3.0F) * size, colour);
-    const float top = std::max(plot.y_px(bin.error_N.largest()), plot.top() + 4.0F * size);
-    plot.list().AddTriangleFilled({x - 4.0F * size, top + 3.0F * size}, {x + 4.0F * size, top + 3.0F * size},
-                                  {x, top - 4.0F * size}, colour);
-  }
-  plot.line(spread, colour, (selected ? 2.6F : 1.5F) * size);
-}
-
-// Draws mean + standard deviation and maximum of the error in each bin of the force, and the JND.
-void draw_error_bins(const ModelsView& models, const UiStyle& style, float height) {
-  const PlotAxes axes = axes_of_bins(models);
-  {
-    const LivePlot plot(style, {ImGui::GetContentRegionAvail().x, height}, axes);
-    std::vector<ImVec2> line, floor;
-    for (const double force_N : {0.0, axes.x.to}) {
-      line.emplace_back(plot.x_px(force_N), plot.y_px(models.jnd.at(force_N)));
-      floor.emplace_back(plot.x_px(force_N), plot.bottom());
-    }
-    plot.band(line, floor, ink(style.colours().band));
-    plot.line(line, ink(style.colours().text), 1.5F * style.scale());
-    for (const std::size_t slot : models.drawn()) draw_slot(plot, models, slot, style);
-    plot.caption("JND", std::max(plot.top(), plot.y_px(models.jnd.offset_N) - 0.25F * (plot.bottom() - plot.top())));
-  }
-  tip("Error against force, in steps of two JND.\nDots: mean + standard deviation. "
-      "Triangles: the largest.\nBlack line: the just noticeable difference.");
-}
-
 constexpr std::size_t kFaultsShown = 6;
 constexpr double kFewFrames_per_s = 50.0;
+constexpr std::uint64_t kStart_ticks = 10'000;
 // A larger share of missed deadlines is reported.
 constexpr double kManyMissed = 0.01;
 
@@ -96,28 +44,6 @@ std::string text_of(const char* pattern, double a, double b = 0.0) {
   char text[160];
   std::snprintf(text, sizeof text, pattern, a, b);
   return text;
-}
-
-void row(const char* name, const TimePercentiles& times) {
-  ImGui::TableNextRow();
-  ImGui::TableNextColumn();
-  ImGui::TextUnformatted(name);
-  for (const double value : {times.p50_us, times.p99_us, times.p99_9_us, times.max_us}) {
-    ImGui::TableNextColumn();
-    ImGui::Text("%.0f", value);
-  }
-}
-
-void draw_times(const LoopStatistics& statistics, const FrameFigures& frames) {
-  ImGui::Text("%llu ticks, the last %.1f ms ago", static_cast<unsigned long long>(statistics.ticks),
-              1e3 * statistics.age_s);
-  if (!ImGui::BeginTable("times", 5, ImGuiTableFlags_SizingStretchProp | ImGuiTableFlags_NoSavedSettings)) return;
-  for (const char* heading : {"microseconds", "p50", "p99", "p99.9", "max"}) ImGui::TableSetupColumn(heading);
-  ImGui::TableHeadersRow();
-  row("lateness", statistics.lateness);
-  row("tick", statistics.tick);
-  row("frame", frames.times.percentiles());
-  ImGui::EndTable();
 }
 
 void draw_faults(const HealthView& health, const UiStyle& style) {
@@ -150,7 +76,7 @@ void draw_health(const HealthView& health, ViewState& view, const UiStyle& style
   const Palette& p = style.colours();
   wrapped(words.problem ? p.fault : p.quiet, words.text + (words.past ? ". C clears this." : ""));
   if (ImGui::IsItemClicked()) view.details = !view.details;
-  tip("How well the 1000 Hz loop keeps its time. L shows all figures and faults.");
+  tip("How well the 1000 Hz loop keeps its time. L shows the faults.");
   const RtStatus& scheduling = health.scheduling;
   ImGui::TextDisabled("scheduling: %s", scheduling.scheduling.c_str());
   if (!scheduling.fix.empty()) {
@@ -165,7 +91,6 @@ void draw_health(const HealthView& health, ViewState& view, const UiStyle& style
   }
   if (!view.details) return;
   if (!scheduling.fix.empty()) ImGui::TextWrapped("%s", scheduling.fix.c_str());
-  draw_times(health.loop, view.frames);
   draw_faults(health, style);
 }
 
@@ -202,7 +127,8 @@ HealthWords health_words(const HealthView& health, double recent_fps, bool detai
                 (health.scheduling.realtime ? "" : ", or allow real-time priority"),
             true};
   }
-  if (recent_fps > 0.0 && recent_fps < kFewFrames_per_s) {
+  // The first seconds have the start in them.
+  if (recent_fps > 0.0 && recent_fps < kFewFrames_per_s && statistics.ticks > kStart_ticks) {
     // A slow picture does not affect the force, so it is not a fault.
     return {text_of("%.0f frames a second: a slow picture, ", recent_fps) +
                 (statistics.missed_deadlines == 0 ? "the force is not affected"
@@ -210,19 +136,21 @@ HealthWords health_words(const HealthView& health, double recent_fps, bool detai
             false};
   }
   return {text_of("tick p99 %.0f us, late p99 %.0f us", statistics.tick.p99_us, statistics.lateness.p99_us) +
-              ", missed " + std::to_string(statistics.missed_deadlines) + text_of(", %.0f fps", recent_fps),
+              ", missed " + std::to_string(statistics.missed_deadlines) +
+              (recent_fps > 0.0 ? text_of(", %.0f fps", recent_fps) : ""),
           false};
 }
 
-void draw_panel(ForceCurves& curves, LiveSession& session, const WindowView& shown, ViewState& view,
-                const UiStyle& style, const SceneArea& area) {
-  begin_panel("panel", area);
+void draw_panel(ForceCurves& curves, const WindowView& shown, ViewState& view, const UiStyle& style,
+                const SceneArea& area, const WindowActions& actions) {
+  begin_panel(kPanelWindow, area);
   const ModelsView& models = shown.models;
   const float line = ImGui::GetTextLineHeightWithSpacing();
   // The plots share the height that the parts of fixed size leave.
   // The loop's lines keep room for three, so that nothing moves when one of them is wrapped.
   const float health_room = std::max(3.0F * line, view.health_px);
-  const float rows = static_cast<float>(std::clamp<std::size_t>(models.listed().size(), 2, 8)) + 1.0F;
+  const float rows =
+      static_cast<float>(std::clamp<std::size_t>(models.listed().size(), 2, 8)) + (shown.has_material ? 2.0F : 1.0F);
   const float table = rows * (ImGui::GetTextLineHeight() + 2.0F * ImGui::GetStyle().CellPadding.y + 1.0F) +
                       0.28F * ImGui::GetFontSize() + 3.0F;
   const float titles = line * 3.4F;
@@ -230,19 +158,16 @@ void draw_panel(ForceCurves& curves, LiveSession& session, const WindowView& sho
       std::ranges::any_of(models.drawn(), [&](std::size_t i) { return models.slots[i].takes_centres; });
   const float centres = has_centres ? ImGui::GetFrameHeightWithSpacing() : 0.0F;
   const float rest = std::max(6.0F * line, ImGui::GetContentRegionAvail().y - health_room - table - centres - titles);
-  const bool bins = !view.details || rest > 14.0F * line;
+  // Where the panel is too low for three plots, the last one goes.
+  const bool bins = rest > (view.details ? 14.0F : 11.0F) * line;
   curves.draw(shown, view, style, rest * (bins ? 0.34F : 0.52F), rest * (bins ? 0.29F : 0.48F));
-  draw_model_table(session, models, view, style, table);
-  if (centres > 0.0F) draw_centres(session, models, view);
+  draw_model_table(shown, view, style, table, actions);
+  if (centres > 0.0F) draw_centres(models, view, actions);
   if (bins) {
-    section_title(style, view.verdict ? "ERROR / JND AGAINST TIME OF A TICK" : "ERROR AGAINST FORCE");
+    section_title(style, "ERROR / JND AGAINST TIME OF A TICK");
     ImGui::SameLine();
     quiet_words(models.counted);
-    if (view.verdict) {
-      draw_speed(models, style, rest * 0.36F);
-    } else {
-      draw_error_bins(models, style, rest * 0.36F);
-    }
+    draw_speed(models, style, rest * 0.36F);
   }
   const float above_px = ImGui::GetCursorPosY();
   draw_health(shown.health, view, style);

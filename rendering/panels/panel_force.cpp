@@ -17,6 +17,7 @@ constexpr double kDifference_jnd = 3.0;
 constexpr float kPredictedAlpha = 0.28F;
 // Share of the width for the curves over time; the curves over depth have the rest.
 constexpr float kTimeShare = 0.6F;
+constexpr std::size_t kLongestPress = 30'000;  // ticks
 // Largest number of points of a curve over depth: one for every few ticks in ten seconds.
 constexpr std::size_t kLoopPoints = 1500;
 
@@ -39,7 +40,6 @@ double farther(const Range& range) { return -range.from > range.to ? range.from 
 using SlotRange = Range (*)(const CurveColumn& column, std::size_t slot);
 
 Range force_of(const CurveColumn& column, std::size_t slot) { return single(column.tick.force_N[slot]); }
-Range sustained_of(const CurveColumn& column, std::size_t slot) { return single(column.sustained_over_jnd[slot]); }
 Range difference_of(const CurveColumn& column, std::size_t slot) {
   return {column.low_over_jnd[slot], column.high_over_jnd[slot]};
 }
@@ -55,7 +55,10 @@ struct Drawing {
   const ModelsView& models() const { return shown.models; }
   float scale() const { return style.scale(); }
   Rgb colour(std::size_t slot) const { return slot_colour(models(), slot, style.theme()); }
-  Rgb reference() const { return reference_colour(style.theme()); }
+  // Green is the truth; a model that the others are compared with has its own colour.
+  Rgb reference() const {
+    return models().reference == kReferenceBlock ? reference_colour(style.theme()) : colour(models().reference);
+  }
   // Without a reference, the curves show the predicted error of the active model.
   bool predicts() const { return !models().compared && models().active() != nullptr; }
   double predicted_over_jnd(const CurveColumn& column) const {
@@ -86,57 +89,48 @@ struct Drawing {
     tip((words + "\nForce of every model, and in green what they are compared with.\n"
                  "The grey band is one just noticeable difference (JND) to either side.\n"
                  "Marks at the top: missed deadlines, and in red faults (L lists them).\n"
-                 "Drag to zoom, turn the wheel to scroll back, double-click or press Space to continue.")
+                 "Drag: blocks and numbers show that moment. Shift and drag: zoom. Wheel: scroll back.\n"
+                 "Double-click or Space: continue.")
             .c_str());
     ImGui::SameLine(width + ImGui::GetStyle().WindowPadding.x);
     section_title(style, "AGAINST DEPTH");
     tip("The same force against the depth of the tool. Loading and unloading differ (hysteresis).\n"
-        "Green: what the models are compared with; the active model in its colour.");
+        "Thin: what the models are compared with; thick: the active model. The dot is the moment that is shown.");
   }
 
   void draw_titles_of_error() const {
-    const bool difference = view.settings.difference;
-    section_title(style, predicts()   ? "PREDICTED ERROR / JND"
-                         : difference ? "DIFFERENCE / JND"
-                                      : "ERROR / JND, MEAN OVER 50 MS");
+    section_title(style, predicts() ? "PREDICTED ERROR / JND" : "DIFFERENCE / JND");
     ImGui::SameLine();
     if (models().out_of_domain()) {
       ImGui::TextColored(paint(style.colours().fault), "away from the recorded data");
-    } else if (view.time.paused) {
-      ImGui::TextDisabled("paused; Space continues");
+    } else if (models().stands) {
+      quiet_words(view.worst ? view.worst->words : "stands still; Space continues");
     } else {
-      quiet_words(difference ? "outside the band a hand could feel it" : "above 1 a hand could feel it");
+      quiet_words("outside the band most people notice it");
     }
-    tip(difference ? "Model minus reference, in just noticeable differences: inside the band a hand cannot feel it.\n"
-                     "V: its mean over 50 ms, as one line."
-                   : "Mean difference over 50 ms, in just noticeable differences. Faint marks: the largest of a single "
-                     "tick.\nV: the difference in its band.");
+    tip("Model minus reference, in just noticeable differences: inside the band few people notice it.");
   }
 
   void draw_curves(const TimePlot& plot, SlotRange range) const {
     for (const std::size_t slot : models().drawn()) {
-      plot.curve(ink(colour(slot)), (slot == models().selected ? kSelectedLine_px : kModelLine_px) * scale(),
-                 [&](const CurveColumn& column) { return range(column, slot); });
+      plot.curve(
+          ink(colour(slot)), (slot == models().selected ? kSelectedLine_px : kModelLine_px) * scale(),
+          [&](const CurveColumn& column) { return range(column, slot); }, slot_dashes(models(), slot));
     }
   }
 
-  // Draws the values under the mouse, and the name of the model whose row is under the mouse.
+  // Draws the values under the mouse.
   void draw_readings(TimePlot& plot, SlotRange range, const char* unit) {
     if (plot.handle_mouse(*shown.history)) hovered = true;
 
     const CurveColumn* under = columns.at(view.time.hover_s);
-    const CurveColumn* last = columns.last();
     std::vector<Reading> readings;
     const auto read = [&](const std::string& name, const Rgb& in, double value, const char* of) {
       if (!std::isnan(value)) readings.push_back({name + "  " + at_most_three_decimals(value) + of, in});
     };
     if (under != nullptr) read("reference", reference(), under->tick.reference_N, " N");
     for (const std::size_t slot : models().listed()) {
-      const std::string& name = models().slots[slot].name;
-      const double end = last != nullptr ? farther(range(*last, slot)) : std::nan("");
-      if (slot == view.pointed && !std::isnan(end))
-        plot.draw_name(name, text_colour(colour(slot), style.theme()), plot.y_px(end));
-      if (under != nullptr) read(name, colour(slot), farther(range(*under, slot)), unit);
+      if (under != nullptr) read(models().slots[slot].name, colour(slot), farther(range(*under, slot)), unit);
     }
     plot.draw_readings(readings);
   }
@@ -144,8 +138,11 @@ struct Drawing {
   // Draws force against depth: the reference with its band, and the active model.
   void draw_loops(const ImVec2& size, double scale_N) const {
     const ForceHistory& history = *shown.history;
-    const std::size_t first = history.first_at(end_s - view.time.shown_s);
+    std::size_t first = history.first_at(end_s - view.time.shown_s);
     const std::size_t end = history.first_at(end_s);
+    // The whole press, also after a long hold.
+    for (std::size_t most = kLongestPress; first > 0 && first < end && most > 0 && history[first].in_contact; --most)
+      --first;
     double deepest_mm = std::isfinite(shown.usual_depth_m) ? 1e3 * shown.usual_depth_m : 1.0;
     for (std::size_t i = first; i < end; ++i) deepest_mm = std::max(deepest_mm, 1e3 * history[i].depth_m);
     const LivePlot plot(style, size,
@@ -177,6 +174,11 @@ struct Drawing {
       extend(model_points, point.depth_m, point.force_N[models().selected]);
     }
     flush();
+    const HistoryPoint& now = models().now;
+    const float now_N = models().active() != nullptr ? now.force_N[models().selected] : now.reference_N;
+    if (!models().stands || std::isnan(now_N)) return;
+    plot.list().AddCircleFilled({plot.x_px(1e3 * now.depth_m), plot.y_px(now_N)}, 4.0F * scale(),
+                                ink(style.colours().text));
   }
 
   void draw_force(const ImVec2& size, double scale_N) {
@@ -205,26 +207,6 @@ struct Drawing {
     draw_curves(plot, difference_of);
     draw_readings(plot, difference_of, " JND");
   }
-
-  void draw_sustained(const ImVec2& size, double most) {
-    TimePlot plot = begin_plot(size, {0.0, most}, "");
-    plot.jnd_band(0.0, 1.0);
-    plot.level(1.0, ink(style.colours().text), 1.5F * scale());
-    fill_prediction(plot, [&](const CurveColumn& column) { return Range{0.0, predicted_over_jnd(column)}; });
-    // Faint marks for the largest difference of a single tick, where a hand could feel it.
-    for (const std::size_t slot : models().drawn()) {
-      for (const CurveColumn& column : columns.columns()) {
-        const double largest = std::abs(farther(difference_of(column, slot)));
-        if (!(largest > 1.0)) continue;
-        const ImVec2 at(plot.x_px(column.time_s - view.time.zero_s),
-                        std::max(plot.y_px(largest), plot.top() + scale()));
-        plot.list().AddRectFilled({at.x - scale(), at.y - scale()}, {at.x + scale(), at.y + scale()},
-                                  ink(colour(slot), 0.35F));
-      }
-    }
-    draw_curves(plot, sustained_of);
-    draw_readings(plot, sustained_of, " JND");
-  }
 };
 
 }  // namespace
@@ -238,15 +220,12 @@ void ForceCurves::draw(const WindowView& shown, ViewState& view, const UiStyle& 
                   drawing.end_s, count);
   const double highest_N = 1.05 * columns_.highest_force_N();
   force_scale_N_ = eased_scale(force_scale_N_, std::max({1.0, shown.usual_force_N, highest_N}));
-  // A larger range than 8 JND would hide differences near 1 JND.
-  error_scale_ = eased_scale(error_scale_, std::clamp(1.2 * columns_.highest_sustained_over_jnd(), 1.5, 8.0));
   drawing.draw_titles_of_force(kTimeShare * all);
   drawing.draw_force({kTimeShare * all - ImGui::GetStyle().ItemSpacing.x, force_height}, force_scale_N_);
   ImGui::SameLine();
   drawing.draw_loops({(1.0F - kTimeShare) * all, force_height}, force_scale_N_);
   drawing.draw_titles_of_error();
-  const ImVec2 size(all, error_height);
-  view.settings.difference ? drawing.draw_difference(size) : drawing.draw_sustained(size, error_scale_);
+  drawing.draw_difference({all, error_height});
   if (!drawing.hovered) view.time.hover_s = std::nan("");
 }
 

@@ -1,10 +1,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string_view>
 #include <utility>
 
 #include "engine/base/text.h"
 #include "rendering/panels/panel.h"
+#include "scenes/worker/model_worker.h"
 
 namespace palpate {
 namespace {
@@ -23,6 +25,7 @@ double error_now_N(const ModelsView& models, Slot slot) {
 
 std::string whole(double value) { return with_thousands(fixed(value, 0)); }
 std::string two_decimals(double value) { return fixed(value, 2); }
+std::string share(double percent) { return fixed(0.01 * std::floor(100.0 * percent), 2); }
 std::string signed_mN(double value_N) {
   const std::string text = fixed(1e3 * value_N, 0);
   return text.front() == '-' ? text : "+" + text;
@@ -38,27 +41,27 @@ struct Column {
 };
 constexpr int kName = 0, kErrorNow = 2, kP99 = 3, kColumns = 7;
 constexpr Column kTable[kColumns] = {
-    {"model", "Click, or press its number, to make a model the active one.", "      trend+greedy-100", 0, nullptr,
-     nullptr},
+    {"model", "Click, or press its number: the active model. Shift and click: the two beside each other.",
+     "      trend+greedy-100", 0, nullptr, nullptr},
     {"N", "Force at the right edge of the curves, newtons", "12.34", 3,
      [](const ModelsView& models, Slot slot) -> double { return models.now.force_N[slot]; }, two_decimals},
     {"error mN", "Model minus reference there, millinewtons", "+1234", 1, error_now_N, signed_mN},
     {"99 % error / JND",
      "99 % of the samples in contact are off by at most so many just noticeable differences (JND).\n"
-     "Above 1 a hand could feel it. The headline, the big number and the plot below are this one.",
+     "Click: shows the moment of the largest error. The headline, the big number and the plot have this number.",
      "12.34", 0,
      [](const ModelsView& models, Slot slot) {
        return with_samples(models.slots[slot], models.slots[slot].errors.p99_error_over_jnd);
      },
      jnd_text},
     {"% in JND",
-     "Share of the samples in contact whose error a hand cannot feel, of the test that the line below names.\n"
+     "Share of the samples in contact within one JND, of the test that the line below names.\n"
      "With more centres it mostly grows, while the largest errors (99 %) may grow, too.",
      "100.00", 4,
      [](const ModelsView& models, Slot slot) {
        return with_samples(models.slots[slot], 100.0 * models.slots[slot].errors.within_jnd);
      },
-     two_decimals},
+     share},
     {"ns",
      "Time of a whole tick of this model alone (motion, features, force), nanoseconds: the median of six\n"
      "interleaved measurements. The report, the plot below and the headline have the same",
@@ -119,74 +122,125 @@ void draw_heading(int column, TableState& sort) {
                                                 colour);
 }
 
-void draw_menu(LiveSession& session, const ModelsView& models, Slot slot, TableState& table) {
-  if (!ImGui::BeginPopupContextItem()) return;
-  if (ImGui::IsWindowAppearing()) {
-    table.name.fill('\0');
-    models.slots[slot].name.copy(table.name.data(), table.name.size() - 1);
-  }
-  ImGui::TextUnformatted("Name, then Enter:");
-  if (ImGui::InputText("##name", table.name.data(), table.name.size(), ImGuiInputTextFlags_EnterReturnsTrue)) {
-    session.models().rename(slot, table.name.data());
-    ImGui::CloseCurrentPopup();
-  }
-  if (models.slots[slot].other_material && ImGui::Selectable("It is a model of this material: compare it"))
-    session.treat_as_this_material(slot);
-  if (ImGui::Selectable("Take it out of the comparison")) session.remove(slot);
-  ImGui::EndPopup();
-}
+struct Rows {
+  const WindowView& shown;
+  ViewState& view;
+  const UiStyle& style;
+  const WindowActions& actions;
 
-void draw_name(LiveSession& session, const ModelsView& models, Slot index, ViewState& view, const UiStyle& style) {
-  const ModelView& slot = models.slots[index];
-  const ImVec2 at = ImGui::GetCursorScreenPos();
-  const float line = ImGui::GetTextLineHeight();
-  const ImU32 colour = ink(slot_colour(models, index, style.theme()), slot.state == SlotState::ready ? 1.0F : 0.35F);
-  // A name that is too long is cut at its number of centres; the last column and the tip have it.
-  std::string name = slot.name;
-  if (ImGui::CalcTextSize(("      " + name).c_str()).x > ImGui::GetContentRegionAvail().x)
-    name.erase(std::min(name.find('-'), name.size()));
-  if (!slot.equals.empty()) name += "  (why?)";
-  const std::string label = "      " + name + "###slot" + std::to_string(index);
-  const bool usable = slot.state == SlotState::ready;
-  const auto flags = ImGuiSelectableFlags_SpanAllColumns | (usable ? 0 : ImGuiSelectableFlags_Disabled);
-  if (ImGui::Selectable(label.c_str(), index == models.selected, flags)) session.models().select(index);
-  if (ImGui::IsItemHovered()) view.pointed = index;
-  draw_menu(session, models, index, view.table);
-  tip(((index == models.selected ? slot.name + " is the active model"
-                                 : "Click, or press " + std::to_string(models.number_of(index)) + ", to make " +
-                                       slot.name + " the active model") +
-       equal_words(slot))
-          .c_str());
-  ImDrawList& list = *ImGui::GetWindowDrawList();
-  const ImVec2 middle(at.x + 0.62F * line, at.y + 0.5F * line);
-  if (index == models.selected) list.AddCircle(middle, 0.52F * line, ink(style.colours().text), 0, 1.5F);
-  draw_mark(list, middle, (index == models.selected ? 0.40F : 0.27F) * line, slot.paper, colour, style);
-}
+  const ModelsView& models() const { return shown.models; }
 
-void draw_waiting(const ModelView& slot) {
-  ImGui::TableNextColumn();
-  const ImVec2 at = ImGui::GetCursorScreenPos();
-  ImGui::PushClipRect(at, {at.x + 12.0F * ImGui::GetFontSize(), at.y + 2.0F * ImGui::GetFontSize()}, false);
-  const std::string words = slot.state == SlotState::waiting   ? "waits"
-                            : slot.state == SlotState::fitting ? "fits " + fixed(100.0 * slot.progress, 0) + " %"
-                                                               : "failed";
-  ImGui::TextDisabled("%s", words.c_str());
-  if (slot.state == SlotState::failed) tip(slot.problem.c_str());
-  ImGui::PopClipRect();
-}
-
-// Draws the figures of a row. Hidden columns have no text; a missing number is a dash.
-void draw_figures(const ModelsView& models, std::size_t index, const UiStyle& style) {
-  for (int column = kName + 1; column < kColumns; ++column) {
-    const Column& one = kTable[column];
-    if (!ImGui::TableSetColumnIndex(column)) continue;
-    const double value = one.value(models, index);
-    const Rgb colour = column == kP99 && value > 1.0 ? text_colour(kAboveJndColour, style.theme())
-                       : column == kErrorNow         ? style.colours().quiet
-                                                     : style.colours().text;
-    right_aligned(std::isnan(value) ? "–" : one.text(value), colour);
+  void draw_menu(Slot slot) const {
+    if (!models().slots[slot].other_material || !ImGui::BeginPopupContextItem()) return;
+    if (ImGui::Selectable("It is a model of this material: compare it")) actions.treat_as_this_material(slot);
+    ImGui::EndPopup();
   }
-}
+
+  // A model that is ready is taken out, the fit of another one is cancelled.
+  void draw_cross(Slot slot) const {
+    ImGui::PushID(static_cast<int>(slot));
+    if (ImGui::SmallButton("×")) actions.remove(slot);
+    ImGui::PopID();
+    tip(models().slots[slot].state == SlotState::ready ? "takes it out of the comparison" : "cancels the fit");
+  }
+
+  void draw_name(Slot index) const {
+    const ModelView& slot = models().slots[index];
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    const float line = ImGui::GetTextLineHeight(), all = ImGui::GetContentRegionAvail().x;
+    const ImU32 colour =
+        ink(slot_colour(models(), index, style.theme()), slot.state == SlotState::ready ? 1.0F : 0.35F);
+    const bool usable = slot.state == SlotState::ready, selected = index == models().selected;
+    const bool crossed = view.crossed == index || selected;
+    // A name that is too long is cut at its number of centres; the last column and the tip have it.
+    std::string name = slot.name;
+    if (ImGui::CalcTextSize(("      " + name + "  ×").c_str()).x > all)
+      name.erase(std::min(name.find('-'), name.size()));
+    if (!slot.equals.empty()) name += "  (why?)";
+    const std::string label = "      " + name + "###slot" + std::to_string(index);
+    const auto flags = ImGuiSelectableFlags_SpanAllColumns | ImGuiSelectableFlags_AllowItemOverlap |
+                       (usable ? 0 : ImGuiSelectableFlags_Disabled);
+    if (ImGui::Selectable(label.c_str(), selected || models().second == index, flags)) choose(index);
+    if (ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) view.pointed = index;
+    draw_menu(index);
+    tip(((selected ? slot.name + " is the active model"
+                   : "Click, or press " + std::to_string(models().number_of(index)) + ", to make " + slot.name +
+                         " the active model; Shift and click: these two beside each other") +
+         equal_words(slot))
+            .c_str());
+    ImDrawList& list = *ImGui::GetWindowDrawList();
+    const ImVec2 middle(at.x + 0.62F * line, at.y + 0.5F * line);
+    if (selected) list.AddCircle(middle, 0.52F * line, ink(style.colours().text), 0, 1.5F);
+    draw_mark(list, middle, (selected ? 0.40F : 0.27F) * line, slot.paper, colour, style);
+    if (!crossed || !usable) return;
+    ImGui::SameLine(all - ImGui::CalcTextSize("×").x - 2.0F * ImGui::GetStyle().FramePadding.x);
+    draw_cross(index);
+  }
+
+  void choose(Slot index) const {
+    if (!ImGui::GetIO().KeyShift) return actions.select(index);
+    view.second = index;
+    view.settings.blocks = 2;
+  }
+
+  void draw_waiting(Slot index) const {
+    const ModelView& slot = models().slots[index];
+    ImGui::TableNextColumn();
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    const float line = ImGui::GetTextLineHeight();
+    ImGui::PushClipRect(at, {at.x + 14.0F * line, at.y + 2.0F * line}, false);
+    if (slot.state == SlotState::failed) {
+      ImGui::TextDisabled("failed");
+      tip(slot.problem.c_str());
+    } else {
+      const std::string words = slot.state == SlotState::waiting ? "waits" : fixed(100.0 * slot.progress, 0) + " %";
+      ImGui::ProgressBar(static_cast<float>(slot.progress), {7.0F * line, line}, words.c_str());
+    }
+    ImGui::SameLine();
+    draw_cross(index);
+    ImGui::PopClipRect();
+  }
+
+  // The last row: a list of methods, each with its sizes.
+  void draw_plus() const {
+    if (ImGui::Selectable("  +  add a model", false, ImGuiSelectableFlags_SpanAllColumns)) ImGui::OpenPopup("add");
+    tip("Fits another model: a method and its number of centres");
+    if (!ImGui::BeginPopup("add")) return;
+    for (const MethodChoice& method : method_choices()) {
+      ImGui::PushID(method.family.c_str());
+      ImGui::AlignTextToFramePadding();
+      ImGui::TextUnformatted(method.family.c_str());
+      for (const char* size : {"", "10", "20", "50", "100", "200"}) {
+        if ((*size == '\0') == method.takes_centres) continue;
+        ImGui::SameLine(*size == '\0' || size == std::string_view("10") ? 9.0F * ImGui::GetFontSize() : 0.0F);
+        if (ImGui::Button(*size == '\0' ? "add" : size)) {
+          actions.add_model(method.family + (*size == '\0' ? "" : "-") + size);
+          ImGui::CloseCurrentPopup();
+        }
+      }
+      ImGui::PopID();
+    }
+    ImGui::EndPopup();
+  }
+
+  // Draws the figures of a row. Hidden columns have no text; a number that is not known is a dash.
+  void draw_figures(Slot index) const {
+    for (int column = kName + 1; column < kColumns; ++column) {
+      const Column& one = kTable[column];
+      if (!ImGui::TableSetColumnIndex(column)) continue;
+      const ImVec2 at = ImGui::GetCursorScreenPos();
+      const ImVec2 end(at.x + ImGui::GetContentRegionAvail().x, at.y + ImGui::GetTextLineHeight());
+      const double value = models().slots[index].refitting ? kNone : one.value(models(), index);
+      const Rgb colour = column == kP99 && value > 1.0 ? text_colour(kAboveJndColour, style.theme())
+                         : column == kErrorNow         ? style.colours().quiet
+                                                       : style.colours().text;
+      right_aligned(std::isnan(value) ? "–" : one.text(value), colour);
+      if (column == kP99 && ImGui::IsWindowHovered() && ImGui::IsMouseHoveringRect(at, end) &&
+          ImGui::IsMouseClicked(ImGuiMouseButton_Left))
+        actions.worst(index);
+    }
+  }
+};
 
 float column_width(int column) {
   return std::max(ImGui::CalcTextSize(kTable[column].heading).x, ImGui::CalcTextSize(kTable[column].widest).x) +
@@ -218,8 +272,9 @@ std::vector<int> shown_columns(float room, float (*width)(int)) {
   return columns;
 }
 
-void draw_model_table(LiveSession& session, const ModelsView& models, ViewState& view, const UiStyle& style,
-                      float height) {
+void draw_model_table(const WindowView& window, ViewState& view, const UiStyle& style, float height,
+                      const WindowActions& actions) {
+  view.crossed = view.pointed;
   view.pointed = kReferenceBlock;
   const auto flags = ImGuiTableFlags_Hideable | ImGuiTableFlags_ScrollY | ImGuiTableFlags_BordersInnerH |
                      ImGuiTableFlags_NoSavedSettings;
@@ -235,15 +290,21 @@ void draw_model_table(LiveSession& session, const ModelsView& models, ViewState&
   ImGui::TableNextRow(ImGuiTableRowFlags_Headers);
   for (const int column : shown)
     if (ImGui::TableSetColumnIndex(column)) draw_heading(column, view.table);
-  for (const std::size_t index : sorted_slots(models, view.table)) {
+  const Rows rows{window, view, style, actions};
+  for (const std::size_t index : sorted_slots(window.models, view.table)) {
     ImGui::TableNextRow();
     ImGui::TableSetColumnIndex(kName);
-    draw_name(session, models, index, view, style);
-    if (models.slots[index].state == SlotState::ready) {
-      draw_figures(models, index, style);
+    rows.draw_name(index);
+    if (window.models.slots[index].state == SlotState::ready) {
+      rows.draw_figures(index);
     } else {
-      draw_waiting(models.slots[index]);
+      rows.draw_waiting(index);
     }
+  }
+  if (window.has_material) {
+    ImGui::TableNextRow();
+    ImGui::TableSetColumnIndex(kName);
+    rows.draw_plus();
   }
   ImGui::EndTable();
 }

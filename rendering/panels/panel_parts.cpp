@@ -1,8 +1,10 @@
-#include "rendering/panels/panel_parts.h"
+#include "rendering/panels/panel.h"
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <sstream>
+#include <string_view>
 
 namespace palpate {
 
@@ -44,12 +46,13 @@ std::string fitting(const std::string& text, float room) {
   return {};
 }
 
-std::string in_lines(const std::string& text, float width) {
+std::string in_lines(const std::string& text, float width, ImFont* font) {
+  if (font == nullptr) font = ImGui::GetFont();
   std::string lines, line;
   std::istringstream words(text);
   for (std::string word; words >> word;) {
     const std::string longer = line.empty() ? word : line + " " + word;
-    const bool fits = line.empty() || ImGui::CalcTextSize(longer.c_str()).x <= width;
+    const bool fits = line.empty() || text_size(font, longer).x <= width;
     if (!fits) lines += line + "\n";
     line = fits ? longer : word;
   }
@@ -83,15 +86,34 @@ void section_title(const UiStyle& style, const char* title) {
   ImGui::TextColored(paint(style.colours().text), "%s", title);
 }
 
-Rgb slot_colour(const ModelsView& models, std::size_t slot, Theme theme) {
-  const std::string& method = models.slots[slot].method;
-  const Rgb hue = method_colour(method, theme);
+namespace {
+
+// Which of the listed models of its method this is, from 0.
+std::size_t among_its_method(const ModelsView& models, std::size_t slot) {
+  const auto hue = [&](std::size_t i) { return method_colour(models.slots[i].method, Theme::light); };
   std::size_t which = 0;
   for (const std::size_t i : models.listed()) {
     if (i == slot) break;
-    if (method_colour(models.slots[i].method, theme) == hue) ++which;
+    if (hue(i) == hue(slot)) ++which;
   }
-  return method_colour(method, theme, which);
+  return which;
+}
+
+}  // namespace
+
+Rgb slot_colour(const ModelsView& models, std::size_t slot, Theme theme) {
+  return method_colour(models.slots[slot].method, theme, among_its_method(models, slot));
+}
+
+// A method's pattern follows from its place in the alphabet, so that it is the same in every session.
+Dashes slot_dashes(const ModelsView& models, std::size_t slot) {
+  constexpr Dashes kPatterns[] = {{0.0F, 0.0F}, {14.0F, 4.0F}, {7.0F, 3.0F}, {3.0F, 3.0F}, {22.0F, 7.0F}};
+  constexpr std::string_view kOrder[] = {"trend", "greedy", "kdtree", "random", "voxel"};
+  const std::string& method = models.slots[slot].method;
+  std::size_t place = 0;
+  for (std::size_t i = 0; i < std::size(kOrder); ++i)
+    if (method == kOrder[i]) place = i;
+  return kPatterns[(place + among_its_method(models, slot)) % std::size(kPatterns)];
 }
 
 void draw_mark(ImDrawList& list, const ImVec2& middle, float radius, bool paper, ImU32 colour, const UiStyle& style) {

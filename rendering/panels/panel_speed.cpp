@@ -135,7 +135,7 @@ struct SpeedPlot {
 
   // Draws what the JND is above its line, at the left or the right, where no model is.
   void draw_caption() {
-    const char* text = "a hand could tell";
+    const char* text = "above 1: most people notice it";
     const float width = ImGui::CalcTextSize(text).x, gap = 0.4F * line(), bottom = plot.y_px(0.0);
     ImVec4 box(plot.left() + gap, bottom - 1.1F * line(), plot.left() + gap + width, bottom);
     const ImVec4 right(plot.right() - gap - width, box.y, plot.right() - gap, box.w);
@@ -237,7 +237,7 @@ void draw_speed(const ModelsView& models, const UiStyle& style, float height) {
   tip("For each model: the time of a whole tick, and the error that 99 % of the samples do not exceed.\n"
       "Left and low is better. Filled: this program's; hollow: as in the paper of 2009. Lines: 95 % interval of the\n"
       "error, spread of the time. The thin line is the path over the numbers of centres that were tried.\n"
-      "Both values are columns of the table. E shows the error against the force instead.");
+      "Both values are columns of the table.");
   const std::size_t named = models.verdict.chosen.value_or(models.selected);
   if (named < models.slots.size() && has_dot(models, named))
     draw_budget(models.slots[named], ink(slot_colour(models, named, style.theme())), style);

@@ -1,8 +1,9 @@
-#include "rendering/panels/scene_overlay.h"
+#include "rendering/panels/panel.h"
 
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
+#include <utility>
 
 #include "engine/base/text.h"
 
@@ -13,14 +14,15 @@ constexpr auto kFloating = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMo
                            ImGuiWindowFlags_NoBackground | ImGuiWindowFlags_AlwaysAutoResize |
                            ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoNav;
 
+// The sides of a button for a finger, 44 pixels of a display of usual density.
+float button_px(const UiStyle& style) { return 44.0F * std::max(style.scale() / kSmallestScale, 1.0F); }
 // Height of the buttons, and of the bar of a replay above them.
 float buttons_height(const UiStyle& style) {
-  return std::max(ImGui::GetFrameHeight() + 2.0F * ImGui::GetStyle().WindowPadding.y,
-                  2.4F * height_of(style.fonts().body));
+  return std::max(button_px(style), 2.4F * height_of(style.fonts().body)) + 2.0F * ImGui::GetStyle().WindowPadding.y;
 }
-float replay_height(const LiveSession& session, const UiStyle& style) {
-  if (session.replay() == nullptr) return 0.0F;
-  return (session.test().found_m() != 0.0 ? 4.1F : 2.4F) * height_of(style.fonts().body);
+float replay_height(const WindowView& shown, const UiStyle& style) {
+  if (!shown.replay) return 0.0F;
+  return (shown.replay->surface_m != 0.0 ? 4.1F : 2.4F) * height_of(style.fonts().body);
 }
 float big_number_height(const UiStyle& style, float lift) {
   return lift + height_of(style.fonts().big) + 1.9F * height_of(style.fonts().body);
@@ -30,7 +32,7 @@ float big_number_height(const UiStyle& style, float lift) {
 struct Headline {
   std::string words;
   ImVec2 at;
-  float room;  // the width to which it is wrapped
+  float room;  // the width to which its detail is wrapped
   float detail_px, below_px;
 };
 Headline headline_of(const Verdict& verdict, const UiStyle& style, const SceneArea& area) {
@@ -42,8 +44,10 @@ Headline headline_of(const Verdict& verdict, const UiStyle& style, const SceneAr
   Headline headline{verdict.headline, {area.at.x + 0.7F * line + indent, top}, room, top, top};
   // No line ends between a number and its unit.
   std::string& words = headline.words;
-  for (std::size_t i = 0; (i = words.find(" %", i)) != std::string::npos;) words.replace(i, 1, "\u00A0");
-  headline.detail_px = headline.below_px = top + text_size(fonts.heading, words, headline.room).y;
+  for (const char* unit : {" %", " us"})
+    for (std::size_t i = 0; (i = words.find(unit, i)) != std::string::npos;) words.replace(i, 1, "\u00A0");
+  words = in_lines(words, room, fonts.heading);
+  headline.detail_px = headline.below_px = top + text_size(fonts.heading, words).y;
   if (!verdict.detail.empty()) {
     headline.detail_px += 0.1F * line;
     headline.below_px = headline.detail_px + text_size(fonts.body, verdict.detail, headline.room).y;
@@ -54,13 +58,13 @@ Headline headline_of(const Verdict& verdict, const UiStyle& style, const SceneAr
 
 // The overlay of a frame. `lift` in its functions: height of other parts at the lower edge of the area.
 struct Overlay {
-  LiveSession& session;
   const WindowView& shown;
   const BlockView& blocks;
   ViewState& view;
   const UiStyle& style;
   const SceneArea& area;
-  const std::vector<WindowCommand>& commands;
+  const WindowActions& actions;
+  const std::vector<WindowCommand>& commands = *actions.commands;
 
   const ModelsView& models() const { return shown.models; }
   const Palette& colours() const { return style.colours(); }
@@ -81,8 +85,8 @@ struct Overlay {
   float draw_feel(float top_px) const {
     ImGui::SetNextWindowPos({area.at.x + 2.0F, top_px});
     ImGui::Begin("feel", nullptr, kFloating);
-    auto stiffness = static_cast<float>(session.controls().scale.stiffness);
-    auto damping = static_cast<float>(session.controls().scale.damping_Ns_per_m);
+    auto stiffness = static_cast<float>(shown.scale.stiffness);
+    auto damping = static_cast<float>(shown.scale.damping_Ns_per_m);
     ImGui::PushItemWidth(0.28F * area.size.x);
     bool moved = ImGui::SliderFloat("stiffness", &stiffness, static_cast<float>(ForceScale::kLeast),
                                     static_cast<float>(ForceScale::kMost), "x %.2f",
@@ -91,26 +95,32 @@ struct Overlay {
                                "+ %.1f N s/m", ImGuiSliderFlags_AlwaysClamp) ||
             moved;
     ImGui::PopItemWidth();
-    tip("Changes only the rendered force. Curves and figures show the unchanged models. J ends it.");
+    tip("Changes only the rendered force. Curves and figures show the unchanged models. F ends it.");
     const float below_px = top_px + ImGui::GetWindowHeight();
     ImGui::End();
-    if (moved) session.controls().scale = {stiffness, damping};
+    if (moved) actions.scale({stiffness, damping});
     return below_px;
   }
 
   void draw_title() const {
     ImGui::SetNextWindowPos({area.at.x + 2.0F, area.at.y + 2.0F});
     ImGui::Begin("title", nullptr, kFloating);
-    ImGui::TextUnformatted(session.scene().title.c_str());
-    tip(session.scene().description.c_str());
+    ImGui::TextUnformatted(shown.title.c_str());
+    tip(shown.description.c_str());
     ImGui::SameLine(0.0F, ImGui::GetFontSize());
-    const ForceScale& scale = session.controls().scale;
+    const ForceScale& scale = shown.scale;
     const ImVec4 warning = paint(text_colour(kAboveJndColour, style.theme()));
     if (view.scales_force) {
       ImGui::TextColored(warning, "in the hand: stiffness x %.2f, damping + %.1f", scale.stiffness,
                          scale.damping_Ns_per_m);
     } else {
-      ImGui::TextDisabled("drawn twice as deep");
+      if (view.worst) {
+        const std::string& name = models().slots[view.worst->slot].name;
+        ImGui::TextColored(warning, "largest error of %s in %s: %s (Space goes on)", name.c_str(),
+                           view.worst->of_test ? "the test" : "this session", view.worst->words.c_str());
+      } else {
+        ImGui::TextDisabled("drawn twice as deep");
+      }
       if (view.exaggerated) {
         ImGui::SameLine(0.0F, ImGui::GetFontSize());
         ImGui::TextColored(warning, "arrows: difference x 10");
@@ -130,30 +140,9 @@ struct Overlay {
                 models().slots[*verdict.chosen].paper, ink(slot_colour(models(), *verdict.chosen, style.theme())),
                 style);
     }
-    text_at(fonts().heading, headline.at, text_ink(!verdict.chosen), headline.words, headline.room);
+    text_at(fonts().heading, headline.at, text_ink(!verdict.chosen), headline.words);
     text_at(fonts().body, {headline.at.x, headline.detail_px}, text_ink(true), verdict.detail, headline.room);
     return headline.below_px;
-  }
-
-  // Draws a text in the middle on a plate, because it may cover the blocks. Returns the y below it.
-  float draw_plated(const std::string& text, float top_px) const {
-    if (text.empty()) return top_px;
-    const float wrap = 0.8F * area.size.x, pad = 0.4F * line();
-    const ImVec2 size = text_size(fonts().body, text, wrap);
-    const ImVec2 at(area.at.x + 0.5F * (area.size.x - size.x), top_px + pad);
-    draw_plate(list(), at, size, {2.0F * pad, pad}, ink(colours().raised), ink(colours().raised));
-    text_at(fonts().body, at, text_ink(false), text, wrap);
-    return at.y + size.y + 2.0F * pad;
-  }
-
-  // The hint how to press, until the user has pressed with half a newton; else empty.
-  std::string hint() const {
-    constexpr double kPressed_N = 0.5;
-    const ToolInput* tool = session.tool_input();
-    if (tool == nullptr) return {};
-    if (tool->hand_is_exploring()) return "The hand moves by itself. Move the mouse down over the block to press it.";
-    if (session.newest().rendered_N > kPressed_N) view.has_pressed = true;
-    return view.has_pressed ? "" : "Move the mouse down over the block to press it. No button is needed.";
   }
 
   // The error and the time of a model, as in the table.
@@ -164,7 +153,12 @@ struct Overlay {
     return text;
   }
 
-  // Draws the name, the 99 % error and the time of each model below its block.
+  // The number of a block, with which its key chooses it.
+  std::string number_of(std::size_t slot) const {
+    return std::to_string(slot == kReferenceBlock ? models().listed().size() + 1 : models().number_of(slot)) + "  ";
+  }
+
+  // Draws the name, the 99 % error of the test and the time of each model below its block.
   void draw_labels() const {
     const std::vector<std::size_t>& slots = shown.blocks;
     const glm::vec2 picture(area.size.x, area.size.y);
@@ -172,18 +166,24 @@ struct Overlay {
     for (std::size_t i = 0; i < slots.size(); ++i) {
       const bool reference = slots[i] == kReferenceBlock;
       const ModelView* model = reference ? nullptr : &models().slots[slots[i]];
-      const std::string name =
-          reference ? shown.reference_block : std::to_string(models().number_of(slots[i])) + "  " + model->name;
-      const std::string figures = reference ? "what all are compared with" : figures_of(*model);
       const glm::vec2 foot = blocks.foot(i, slots.size(), picture);
       const float room = std::min(blocks.width_of_one(slots.size(), picture), area.size.x) - 6.0F * pad;
+      std::string name = number_of(slots[i]) + (reference ? shown.reference_block : model->name);
+      std::string figures = reference ? "what all are compared with" : figures_of(*model);
+      // Too little room: smaller, then shorter.
       ImFont* font = text_size(fonts().heading, name).x < room ? fonts().heading : fonts().body;
+      if (text_size(font, name).x > room) name.erase(std::min(name.find('-'), name.size()));
+      if (text_size(font, name).x > room) name = number_of(slots[i]);
+      if (text_size(fonts().body, figures).x > room) figures = figures.substr(0, figures.find(", "));
+      if (text_size(fonts().body, figures).x > room) figures.clear();
       const ImVec2 above = text_size(font, name), below = text_size(fonts().body, figures);
       const ImVec2 size(std::max(above.x, below.x), above.y + (figures.empty() ? 0.0F : below.y));
-      const ImVec2 at(area.at.x + std::clamp(foot.x - 0.5F * size.x, 3.0F * pad, area.size.x - size.x - 3.0F * pad),
+      const float right = std::max(3.0F * pad, area.size.x - size.x - 3.0F * pad);
+      const ImVec2 at(area.at.x + std::clamp(foot.x - 0.5F * size.x, 3.0F * pad, right),
                       area.at.y + foot.y + 2.5F * pad);
       const Rgb colour = reference ? reference_colour(style.theme()) : slot_colour(models(), slots[i], style.theme());
-      const bool active = slots[i] == models().selected && slots.size() > 1;
+      const bool active =
+          (reference ? view.material : !view.material && slots[i] == models().selected) && slots.size() > 1;
       draw_plate(list(), at, size, {2.5F * pad, pad}, ink(colours().panel, 0.9F), ink(colour));
       if (active) {
         list().AddRect({at.x - 2.5F * pad, at.y - pad}, {at.x + size.x + 2.5F * pad, at.y + size.y + pad}, ink(colour),
@@ -196,25 +196,30 @@ struct Overlay {
     }
   }
 
-  // Draws the error of the model in the headline as a large number with its description, and the colour scale of
-  // errors.
-  void draw_big_number(float lift) const {
+  ImU32 error_ink(double over_jnd, bool quiet) const {
+    return over_jnd > 1.0 ? ink(text_colour(kAboveJndColour, style.theme())) : text_ink(quiet);
+  }
+
+  // Draws the error of the active model as a large number with its description, and the colour scale of errors.
+  // Returns the x at the right of its texts.
+  float draw_big_number(float lift) const {
     const ImVec2 corner(area.at.x + 1.1F * line(), area.at.y + area.size.y - lift);
     const BigNumber big = big_number(models());
-    const Rgb colour = big.error_over_jnd > 1.0 ? text_colour(kAboveJndColour, style.theme()) : colours().text;
     const float y = area.at.y + area.size.y - big_number_height(style, lift);
-    text_at(fonts().big, {corner.x, y}, ink(colour), big.number);
-    if (ImGui::IsMouseHoveringRect({corner.x, y}, {area.at.x + area.size.x, corner.y})) {
+    text_at(fonts().big, {corner.x, y}, error_ink(big.error_over_jnd, false), big.number);
+    if (ImGui::IsMouseHoveringRect({corner.x, y}, {area.at.x + 0.5F * area.size.x, corner.y})) {
       ImGui::SetTooltip(
-          "99 %% of the samples in contact are off by at most this, in just noticeable differences (JND), over %s.\n"
-          "Your press: the same of what was pressed here since the last reset (C), with the active model.",
+          "Of the samples in contact, 99 %% are off by at most this, in just noticeable differences (JND), over %s.\n"
+          "This press: the largest mean over 50 ms since the tool touched the block. W shows the largest error.",
           models().counted.c_str());
     }
     const ImVec2 usual = text_size(fonts().big, "0.00");
     const ImVec2 beside(corner.x + std::max(usual.x, text_size(fonts().big, big.number).x) + 0.7F * line(),
                         y + 0.30F * usual.y);
-    text_at(fonts().body, beside, text_ink(false), big.what);
-    text_at(fonts().body, {beside.x, beside.y + 1.15F * line()}, text_ink(true), big.below);
+    const float room = area.at.x + area.size.x - beside.x - 0.5F * line();
+    const std::string what = fitting(big.what, room);
+    text_at(fonts().body, beside, text_ink(false), what);
+    text_at(fonts().body, {beside.x, beside.y + 1.15F * line()}, error_ink(big.press_over_jnd, true), big.below);
     const float width = 11.0F * line(), top = y + usual.y + 0.35F * line(), bottom = top + 0.55F * line();
     for (int i = 0; i < 40; ++i) {
       const float from = static_cast<float>(i) / 40.0F;
@@ -229,18 +234,29 @@ struct Overlay {
     label(0.0F, "0");
     label(width - 0.3F * line(), "1");
     label(width + line(), "error / JND");
+    return beside.x + std::max(text_size(fonts().body, what).x, 15.0F * line());
   }
 
   void draw_buttons() const {
     ImGui::SetNextWindowPos({area.at.x + 2.0F, area.at.y + area.size.y - 2.0F}, ImGuiCond_Always, {0.0F, 1.0F});
     ImGui::Begin("buttons", nullptr, kFloating);
+    const float side = button_px(style);
+    int place = 0;
+    const auto show_focus = [&] {
+      if (place++ != view.focus) return;
+      ImGui::GetWindowDrawList()->AddRect(ImGui::GetItemRectMin(), ImGui::GetItemRectMax(), text_ink(false), 4.0F, 0,
+                                          3.0F);
+    };
     for (const WindowCommand& command : commands) {
       if (!command.bar) continue;
-      if (command_button(command)) command.run(0);
+      if (command_button(command, side)) command.run(0);
+      show_focus();
       ImGui::SameLine(0.0F, 4.0F);
     }
-    if (ImGui::Button("Menu")) ImGui::OpenPopup("menu");
-    tip("All other commands and their keys");
+    const bool menu = std::exchange(view.opens_menu, false);
+    if (ImGui::Button("Menu", {0.0F, side}) || menu) ImGui::OpenPopup("menu");
+    show_focus();
+    tip("All other commands and their keys (M)");
     if (ImGui::BeginPopup("menu")) {
       for (const WindowCommand& command : commands) {
         if (command.label.empty() || command.replay || command.bar) continue;
@@ -254,7 +270,7 @@ struct Overlay {
   }
 
   void draw_replay_bar(float lift) const {
-    ReplayControl& replay = *session.replay();
+    const ReplayView& replay = *shown.replay;
     ImGui::SetNextWindowPos({area.at.x + 2.0F, area.at.y + area.size.y - lift}, ImGuiCond_Always, {0.0F, 1.0F});
     ImGui::SetNextWindowSize({area.size.x - 4.0F, 0.0F});
     ImGui::Begin("replay", nullptr, kFloating & ~ImGuiWindowFlags_AlwaysAutoResize);
@@ -265,30 +281,30 @@ struct Overlay {
     }
     // The numbers are beside the sliders, because the grip would hide them.
     ImGui::SetNextItemWidth(0.40F * area.size.x);
-    auto at_s = static_cast<float>(replay.playhead_s());
-    if (ImGui::SliderFloat("##at", &at_s, 0.0F, static_cast<float>(replay.duration_s()), "")) replay.seek(at_s);
+    auto at_s = static_cast<float>(replay.playhead_s);
+    if (ImGui::SliderFloat("##at", &at_s, 0.0F, static_cast<float>(replay.duration_s), "")) actions.seek(at_s);
     tip("Position in the recording");
     ImGui::SameLine();
-    ImGui::Text("%5.1f of %.1f s", replay.playhead_s(), replay.duration_s());
+    ImGui::Text("%5.1f of %.1f s", replay.playhead_s, replay.duration_s);
     ImGui::SameLine();
     ImGui::SetNextItemWidth(-4.5F * ImGui::GetFontSize());
-    auto speed = static_cast<float>(replay.speed());
-    if (ImGui::SliderFloat("##speed", &speed, 0.05F, 10.0F, "", ImGuiSliderFlags_Logarithmic)) replay.set_speed(speed);
+    auto speed = static_cast<float>(replay.speed);
+    if (ImGui::SliderFloat("##speed", &speed, 0.05F, 10.0F, "", ImGuiSliderFlags_Logarithmic)) actions.set_speed(speed);
     tip("Speed of the replay");
     ImGui::SameLine();
-    ImGui::Text("%.2f x", replay.speed());
-    if (session.test().found_m() != 0.0) {
-      bool moved = session.test().moved();
+    ImGui::Text("%.2f x", replay.speed);
+    if (replay.surface_m != 0.0) {
+      bool moved = replay.surface_moved;
       const std::string label =
-          "surface " + fixed(1e3 * session.test().found_m(), 2) + " mm from that of the models; move it there";
-      if (ImGui::Checkbox(label.c_str(), &moved)) session.move_surface(moved);
+          "surface " + fixed(1e3 * replay.surface_m, 2) + " mm from that of the models; move it there";
+      if (ImGui::Checkbox(label.c_str(), &moved)) actions.move_surface(moved);
       tip("On: the surface is moved to where the models fit the recording best. Off: the positions are as recorded.");
     }
     ImGui::End();
   }
 
   void draw_recording() const {
-    const std::string text = recording_words(session.recording());
+    const std::string text = recording_words(shown.recording);
     if (text.empty()) return;
     const ImVec2 size = text_size(fonts().body, text);
     const ImVec2 at(area.at.x + area.size.x - size.x - size.y, area.at.y + 0.9F * size.y);
@@ -299,11 +315,11 @@ struct Overlay {
   // Draws the instructions for a scene without models and material, or the request of the device to its user, in large
   // text in the middle.
   void draw_request() const {
-    std::string words = session.device_words();
-    if (session.models().size() == 0 && session.replay() == nullptr) {
-      words = "No model yet, and no virtual material stands in for \"" + session.scene().title +
-              "\".\nDrop a recording (CSV) here to fit it or to replay it, or a model file (M lists them).\n"
-              "O chooses a scene with a material.";
+    std::string words = shown.device_words;
+    if (models().slots.empty() && !shown.replay) {
+      words = "No model yet, and no virtual material stands in for \"" + shown.title +
+              "\".\nDrop a recording (CSV) here to fit it or to replay it, or a model file (O lists them).\n"
+              "S chooses a scene with a material.";
     }
     if (words.empty()) return;
     words[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(words[0])));
@@ -314,58 +330,71 @@ struct Overlay {
     ImGui::PushFont(fonts().heading);
     ImGui::TextWrapped("%s", words.c_str());
     ImGui::PopFont();
-    if (session.newest().device.zeroing == Zeroing::needed && ImGui::Button("Zero here (Z)")) session.start_zeroing();
+    if (shown.health.newest.device.zeroing == Zeroing::needed && ImGui::Button("Zero here (Z)")) actions.zero_device();
     ImGui::End();
   }
 
-  void draw_toasts(float y) const {
-    const float pad = 0.6F * line(), wrap = 0.86F * area.size.x;
-    ImDrawList& front = *ImGui::GetForegroundDrawList();
-    for (const Toast& toast : view.toasts) {
-      const ImVec2 size = text_size(fonts().body, toast.text, wrap);
-      const float x = area.at.x + 0.5F * (area.size.x - size.x);
-      draw_plate(front, {x, y}, size, {pad, pad}, ink(colours().raised),
-                 ink(toast.problem ? colours().fault : reference_colour(style.theme())));
-      front.AddText(fonts().body, line(), {x, y}, text_ink(false), toast.text.c_str(), nullptr, wrap);
-      y += size.y + 2.6F * pad;
+  // Draws what has to be said now on plates in the corner at the right of `left_px` and above `bottom_px`, which no
+  // block covers; where that is too narrow, below `top_px`.
+  void draw_notes(float left_px, float bottom_px, float top_px) const {
+    const bool exhibit = view.exhibit.on, corner = area.at.x + area.size.x - left_px > 15.0F * line();
+    std::vector<std::pair<std::string, ImU32>> notes;
+    for (const Toast& toast : view.toasts)
+      notes.emplace_back(toast.text, ink(toast.problem ? colours().fault : reference_colour(style.theme())));
+    const std::string warning = exhibit ? "" : data_warning(models());
+    if (!warning.empty()) notes.emplace_back(warning, ink(colours().fault));
+    if (const std::string hint = exhibit ? "" : press_hint(shown, view); !hint.empty() && notes.empty())
+      notes.emplace_back(hint, ink(colours().quiet));
+    const float pad = 0.5F * line();
+    const float wrap = corner ? area.at.x + area.size.x - left_px - 3.0F * pad : 0.86F * area.size.x;
+    float y = corner ? bottom_px : top_px;
+    for (const auto& [text, stripe] : notes) {
+      const ImVec2 size = text_size(fonts().body, text, wrap);
+      if (corner) y -= size.y + 2.0F * pad;
+      const float x =
+          corner ? area.at.x + area.size.x - size.x - 2.0F * pad : area.at.x + 0.5F * (area.size.x - size.x);
+      draw_plate(list(), {x, y + pad}, size, {pad, 0.5F * pad}, ink(colours().raised), stripe);
+      text_at(fonts().body, {x, y + pad}, text_ink(false), text, wrap);
+      if (!corner) y += size.y + 2.0F * pad;
     }
   }
 
   void draw() const {
     const bool exhibit = view.exhibit.on;  // has its own texts
     const float buttons = exhibit ? 0.0F : buttons_height(style);
-    const float bars = buttons + replay_height(session, style);
-    float top_px = area.at.y + 2.0F * line();
+    const float bars = buttons + replay_height(shown, style);
+    float top_px = area.at.y + 2.0F * line(), left_px = area.at.x;
     if (!exhibit) {
       draw_labels();
-      if (!models().slots.empty()) draw_big_number(bars);
+      left_px = draw_big_number(bars);
       draw_title();
       top_px = draw_headline();
-      const std::string warning = data_warning(models());
-      top_px = draw_plated(warning, top_px);
-      if (view.scales_force) {
-        top_px = draw_feel(top_px);
-      } else if (warning.empty()) {
-        top_px = draw_plated(hint(), top_px);
-      }
+      if (view.scales_force) top_px = draw_feel(top_px);
     }
     draw_recording();
-    if (session.replay() != nullptr) draw_replay_bar(buttons);
+    if (shown.replay) draw_replay_bar(buttons);
     if (!exhibit) draw_buttons();
     if (!view.dialogs.recording_roles.any()) draw_request();
-    draw_toasts(top_px + 0.5F * line());
+    draw_notes(left_px, area.at.y + area.size.y - bars, top_px);
   }
 };
 
 }  // namespace
 
-SceneArea stage_of(const LiveSession& session, const Verdict& verdict, const ViewState& view, const UiStyle& style,
-                   const SceneArea& area) {
+std::string press_hint(const WindowView& shown, ViewState& view) {
+  constexpr double kPressed_N = 0.5;
+  if (!shown.has_tool || (shown.models.slots.empty() && !shown.has_material)) return {};
+  if (shown.hand_explores) return "The hand moves by itself. Press the mouse button on a block and pull down.";
+  if (shown.health.newest.rendered_N > kPressed_N) view.has_pressed = true;
+  return view.has_pressed ? "" : "Press the mouse button on a block and pull down; let go to lift the probe.";
+}
+
+SceneArea stage_of(const WindowView& shown, const ViewState& view, const UiStyle& style, const SceneArea& area) {
   if (view.exhibit.on) return area;
   // At least room for a title, a headline of two lines, and its detail, so that the blocks seldom move.
   const float usual = 3.4F * height_of(style.fonts().body) + 2.0F * height_of(style.fonts().heading);
-  const float above = std::max(usual, headline_of(verdict, style, area).below_px - area.at.y);
-  const float below = big_number_height(style, buttons_height(style) + replay_height(session, style));
+  const float above = std::max(usual, headline_of(shown.models.verdict, style, area).below_px - area.at.y);
+  const float below = big_number_height(style, buttons_height(style) + replay_height(shown, style));
   return {{area.at.x, area.at.y + above}, {area.size.x, std::max(1.0F, area.size.y - above - below)}};
 }
 
@@ -377,10 +406,10 @@ std::string recording_words(const RecordingStatus& recording) {
          " samples";
 }
 
-void draw_overlay(LiveSession& session, const WindowView& shown, const BlockView& blocks, ViewState& view,
-                  const UiStyle& style, const SceneArea& area, const OverlayActions& actions) {
-  Overlay{session, shown, blocks, view, style, area, *actions.commands}.draw();
-  draw_dialogs(session, view, actions);
+void draw_overlay(const WindowView& shown, const BlockView& blocks, ViewState& view, const UiStyle& style,
+                  const SceneArea& area, const WindowActions& actions) {
+  Overlay{shown, blocks, view, style, area, actions}.draw();
+  draw_dialogs(shown, view, actions);
 }
 
 }  // namespace palpate

@@ -75,18 +75,14 @@ void CurveColumns::add(const HistoryPoint& point, const JndLine& jnd, CurveColum
     // These ignore NaN.
     column.low_over_jnd[i] = std::fmin(column.low_over_jnd[i], difference);
     column.high_over_jnd[i] = std::fmax(column.high_over_jnd[i], difference);
-    column.sustained_over_jnd[i] = std::fmax(column.sustained_over_jnd[i], std::abs(point.sustained_over_jnd[i]));
   }
 }
 
 void CurveColumns::find_highest() {
-  highest_force_N_ = highest_sustained_ = 0.0F;
+  highest_force_N_ = 0.0F;
   for (const CurveColumn& column : columns_) {
     highest_force_N_ = std::fmax(highest_force_N_, column.tick.reference_N + column.jnd_N);
-    for (std::size_t i = 0; i < slots_; ++i) {
-      highest_force_N_ = std::fmax(highest_force_N_, column.tick.force_N[i]);
-      highest_sustained_ = std::fmax(highest_sustained_, column.sustained_over_jnd[i]);
-    }
+    for (std::size_t i = 0; i < slots_; ++i) highest_force_N_ = std::fmax(highest_force_N_, column.tick.force_N[i]);
   }
 }
 
@@ -98,15 +94,9 @@ const CurveColumn* CurveColumns::at(double time_s) const noexcept {
   return column.any ? &column : nullptr;
 }
 
-const CurveColumn* CurveColumns::last() const noexcept {
-  const auto found =
-      std::find_if(columns_.rbegin(), columns_.rend(), [](const CurveColumn& column) { return column.any; });
-  return found != columns_.rend() ? &*found : nullptr;
-}
-
 TimePlot::TimePlot(const UiStyle& style, const ImVec2& size, const Range& y, const char* y_unit, CurveTime& time,
                    double end_s, const CurveColumns& columns)
-    : LivePlot(style, size, {{end_s - time.shown_s - time.zero_s, end_s - time.zero_s}, y, "s", y_unit}),
+    : LivePlot(style, size, {{end_s - time.shown_s - time.zero_s, end_s - time.zero_s}, y, "s", y_unit, false, 0.0}),
       time_(time),
       end_s_(end_s),
       columns_(columns) {}
@@ -120,14 +110,17 @@ std::vector<std::vector<TimePlot::ColumnPixels>> TimePlot::runs(const ColumnRang
     if (std::isnan(values.from) || std::isnan(values.to)) {
       runs.emplace_back();
     } else {
-      runs.back().push_back({time_px(column.tick.loop_time_s), y_px(values.from), y_px(values.to)});
+      // Beyond the frame a curve runs along its edge.
+      const auto inside_px = [this](double y) { return std::clamp(y_px(y), top() + 1.0F, bottom() - 1.0F); };
+      runs.back().push_back({time_px(column.tick.loop_time_s), inside_px(values.from), inside_px(values.to)});
     }
   }
   return runs;
 }
 
-void TimePlot::curve(ImU32 colour, float thickness, const ColumnRange& range) const {
+void TimePlot::curve(ImU32 colour, float thickness, const ColumnRange& range, const Dashes& dashes) const {
   std::vector<ImVec2> points;
+  const float start_px = time_px(time_.zero_s);  // so that dashes move with the curve
   for (const std::vector<ColumnPixels>& run : runs(range)) {
     points.clear();
     for (const auto& [x, low, high] : run) {
@@ -136,7 +129,7 @@ void TimePlot::curve(ImU32 colour, float thickness, const ColumnRange& range) co
       points.emplace_back(x, falling ? high : low);
       if (low - high > 1.5F) points.emplace_back(x, falling ? low : high);
     }
-    line(points, colour, thickness);
+    line(points, colour, thickness, dashes, start_px);
   }
 }
 
@@ -168,43 +161,53 @@ double TimePlot::time_under_mouse() const {
   return x_at(std::clamp(ImGui::GetIO().MousePos.x, left(), right())) + time_.zero_s;
 }
 
-void TimePlot::drag() {
-  if (hovered() && ImGui::IsMouseClicked(ImGuiMouseButton_Left)) time_.drag_from_s = time_under_mouse();
-  if (std::isnan(time_.drag_from_s)) return;
-  const float from_px = time_px(time_.drag_from_s);
-  const float to_px = time_px(time_under_mouse());
-  const bool dragged = std::abs(to_px - from_px) > kDrag_px;
-  if (!ImGui::IsMouseDown(ImGuiMouseButton_Left)) {
-    if (dragged) time_.zoom(time_.drag_from_s, time_under_mouse());
-    time_.drag_from_s = std::nan("");
-  } else if (dragged) {
+// The plot in which a drag began owns it, also where the mouse leaves it.
+void TimePlot::drag(double oldest_s) {
+  const ImGuiIO& io = ImGui::GetIO();
+  if (hovered() && ImGui::IsMouseClicked(ImGuiMouseButton_Left)) {
+    time_.dragging = !io.KeyShift;
+    if (io.KeyShift) time_.zoom_from_s = time_under_mouse();
+  }
+  const ImVec2 began = io.MouseClickedPos[ImGuiMouseButton_Left];
+  if (began.x < left() || began.x > right() || began.y < top() || began.y > bottom()) return;
+  const bool down = ImGui::IsMouseDown(ImGuiMouseButton_Left);
+  if (time_.dragging && down) time_.drag_to(std::max(oldest_s, time_under_mouse()), end_s_);
+  if (time_.dragging && !down) time_.end_drag();
+  if (std::isnan(time_.zoom_from_s)) return;
+  const float from_px = time_px(time_.zoom_from_s), to_px = time_px(time_under_mouse());
+  if (down) {
     list().AddRectFilled({std::min(from_px, to_px), top()}, {std::max(from_px, to_px), bottom()},
                          ink(style_.colours().text, 0.10F));
+    return;
   }
+  if (std::abs(to_px - from_px) > kDrag_px) time_.zoom(time_.zoom_from_s, time_under_mouse());
+  time_.zoom_from_s = std::nan("");
 }
 
 bool TimePlot::handle_mouse(const ForceHistory& history) {
-  drag();
+  const double oldest_s = history.size() > 0 ? history[0].loop_time_s : end_s_;
+  drag(oldest_s);
   if (hovered()) {
     time_.hover_s = time_under_mouse();
     if (const float wheel = ImGui::GetIO().MouseWheel; wheel != 0.0F) {
       time_.pause(end_s_);
-      time_.scroll_back(kWheelShare * time_.shown_s * wheel, history.size() > 0 ? history[0].loop_time_s : end_s_);
+      time_.scroll_back(kWheelShare * time_.shown_s * wheel, oldest_s);
     }
-    if (ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left)) {
-      time_.run();
-      time_.drag_from_s = std::nan("");
-    }
+    if (ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left)) time_.run();
   }
-  if (!std::isnan(time_.hover_s)) {
-    const float x = time_px(time_.hover_s);
-    list().AddLine({x, top()}, {x, bottom()}, ink(style_.colours().quiet));
-  }
+  const auto mark = [&](double at_s, float thickness) {
+    if (std::isnan(at_s) || at_s > end_s_) return;
+    const float x = time_px(at_s);
+    list().AddLine({x, top()}, {x, bottom()}, ink(thickness > 1.0F ? style_.colours().text : style_.colours().quiet),
+                   thickness);
+  };
+  mark(time_.hover_s, 1.0F);
+  if (!std::isnan(time_.moment_s) || !std::isnan(time_.rest_s)) mark(time_.at_s(end_s_), 2.0F);
   return hovered();
 }
 
 void TimePlot::draw_readings(const std::vector<Reading>& readings) const {
-  if (!hovered() || std::isnan(time_.hover_s)) return;
+  if (!hovered() || readings.empty()) return;
   const std::string heading = "at " + fixed(time_.hover_s - time_.zero_s, 3) + " s";
   const float line = ImGui::GetTextLineHeight();
   float width = ImGui::CalcTextSize(heading.c_str()).x;
@@ -226,14 +229,6 @@ void TimePlot::draw_readings(const std::vector<Reading>& readings) const {
                         ink(reading.colour), 2.0F);
     front.AddText({low.x + pad + line, y}, ink(style_.colours().text), reading.text.c_str());
   }
-}
-
-void TimePlot::draw_name(const std::string& name, const Rgb& colour, float y_px) const {
-  const float line = ImGui::GetTextLineHeight();
-  const float width = ImGui::CalcTextSize(name.c_str()).x;
-  // The name is above the end of the curve, or below it if there is no room.
-  const float y = y_px - 1.2F * line > top() ? y_px - 1.2F * line : y_px + 0.2F * line;
-  list().AddText({right() - width - 0.3F * line, y}, ink(colour), name.c_str());
 }
 
 }  // namespace palpate

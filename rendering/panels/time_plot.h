@@ -12,9 +12,8 @@
 
 #include "engine/tick/haptics_tick.h"
 #include "engine/tick/jnd.h"
-#include "rendering/panels/view_state.h"
+#include "rendering/panels/window_view.h"
 #include "rendering/ui/plot.h"
-#include "scenes/live/force_history.h"
 
 namespace palpate {
 
@@ -29,8 +28,6 @@ struct CurveColumn {
   // By slot: extremes of (model - reference) / JND, signed; 0 out of contact, NaN without a force or a comparison.
   std::array<float, kMaxModels> low_over_jnd = no_values();
   std::array<float, kMaxModels> high_over_jnd = no_values();
-  std::array<float, kMaxModels> sustained_over_jnd =
-      no_values();  // largest magnitude of HistoryPoint::sustained_over_jnd
 };
 
 // The error (95 %) that the active model predicts of its force, 0 out of contact; NaN: there is none, or there is a
@@ -48,11 +45,8 @@ class CurveColumns {
   const std::vector<CurveColumn>& columns() const noexcept { return columns_; }
   // The column at a time; null: there is none, or it has no ticks.
   const CurveColumn* at(double time_s) const noexcept;
-  // The newest column with ticks; null: there is none.
-  const CurveColumn* last() const noexcept;
   // The largest over all columns and slots; 0 without ticks.
   float highest_force_N() const noexcept { return highest_force_N_; }
-  float highest_sustained_over_jnd() const noexcept { return highest_sustained_; }
 
  private:
   bool scroll(double width_s, double first, std::size_t slots, std::size_t count);
@@ -64,7 +58,7 @@ class CurveColumns {
   double width_s_ = 0.0;
   double first_ = 0.0;    // left border of the first column, in widths
   double taken_s_ = 0.0;  // loop time of the last tick that was gathered
-  float highest_force_N_ = 0.0F, highest_sustained_ = 0.0F;
+  float highest_force_N_ = 0.0F;
 };
 
 // The range of a quantity in a column; NaN: there is none.
@@ -83,19 +77,17 @@ class TimePlot : public LivePlot {
            const CurveColumns& columns);
 
   // A curve through the ranges of the columns. A NaN interrupts it.
-  void curve(ImU32 colour, float thickness, const ColumnRange& range) const;
+  void curve(ImU32 colour, float thickness, const ColumnRange& range, const Dashes& dashes = {}) const;
   // Fills the ranges of the columns. A NaN interrupts the area.
   void fill(ImU32 colour, const ColumnRange& range) const;
   // Marks at the upper edge: a line for missed deadlines, a triangle for a fault.
   void fault_marks() const;
 
-  // The wheel pauses and scrolls; a drag zooms to its range and pauses; a double click resumes. Draws the range of the
-  // drag and the time under the mouse. Returns whether the mouse is over the plot.
+  // A drag moves blocks and numbers to the moment under the mouse, with Shift it zooms; the wheel scrolls; a double
+  // click resumes. Draws the range of the zoom and the moment. Returns whether the mouse is over the plot.
   bool handle_mouse(const ForceHistory& history);
   // Draws a box with readings beside the time under the mouse, if the mouse is over the plot.
   void draw_readings(const std::vector<Reading>& readings) const;
-  // Draws the name of a curve inside the frame at its end, which is at `y_px`.
-  void draw_name(const std::string& name, const Rgb& colour, float y_px) const;
 
  private:
   struct ColumnPixels {
@@ -104,7 +96,7 @@ class TimePlot : public LivePlot {
   std::vector<std::vector<ColumnPixels>> runs(const ColumnRange& range) const;
   float time_px(double loop_time_s) const noexcept { return x_px(loop_time_s - time_.zero_s); }
   double time_under_mouse() const;
-  void drag();
+  void drag(double oldest_s);
 
   CurveTime& time_;
   double end_s_;

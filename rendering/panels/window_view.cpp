@@ -49,27 +49,42 @@ void show_newest(const LiveSession& session, ModelsView& view) {
     if (view.slots[i].state == SlotState::ready) view.now.force_N[i] = static_cast<float>(view.slots[i].force_N);
 }
 
-ModelsView models_view(const LiveSession& session, double until_s) {
+// The other of the two models that two blocks compare: the one that the user chose, else the first other one.
+std::optional<std::size_t> second_of(const ModelsView& models, const ViewState& view) {
+  if (view.settings.blocks != 2 || view.exhibit.on) return std::nullopt;
+  std::optional<std::size_t> second;
+  for (const std::size_t slot : models.listed()) {
+    if (slot == models.selected || models.slots[slot].state != SlotState::ready) continue;
+    if (!second || slot == view.second) second = slot;
+  }
+  return second;
+}
+
+ModelsView models_view(const LiveSession& session, const ViewState& view_state, const ForceHistory& history) {
+  const double until_s = view_state.time.at_s(std::numeric_limits<double>::infinity());
   ModelsView view;
   for (std::size_t i = 0; i < session.models().size(); ++i)
     view.slots.push_back({session.models().info(i), session.figures(i)});
   view.selected = session.models().selected();
+  view.second = second_of(view, view_state);
   view.in_contact = session.newest().tick.in_contact;
+  view.stands = std::isfinite(until_s);
   const Comparison& comparison = session.comparison();
   view.compared = session.has_reference();
   if (comparison.reference() == ReferenceKind::model && view.compared) view.reference = *session.models().reference();
   view.reference_name = session.reference_words(true);
   view.counted = counted_words(session);
+  if (session.test().has_recording()) view.test_name = session.test_name();
   view.replays_training = session.replay() != nullptr && session.tests_training();
   view.jnd = session.jnd();
   view.verdict = session.verdict();
-  const ForceHistory& history = comparison.history();
   if (const HistoryPoint* now = history.last_until(until_s)) {
     view.now = *now;
   } else if (history.size() > 0) {
     view.now = history[0];  // a pause that is longer than the history
   }
-  if (session.replay() != nullptr && session.replay()->paused() && std::isinf(until_s)) show_newest(session, view);
+  if (session.replay() != nullptr && session.replay()->paused() && !view.stands) show_newest(session, view);
+  if (view.stands) view.in_contact = view.now.in_contact;
   return view;
 }
 
@@ -89,7 +104,9 @@ std::vector<std::size_t> ModelsView::listed() const {
 
 std::vector<std::size_t> ModelsView::drawn() const {
   std::vector<std::size_t> list = listed();
-  std::erase_if(list, [&](std::size_t slot) { return slots[slot].state != SlotState::ready; });
+  std::erase_if(list, [&](std::size_t slot) {
+    return slots[slot].state != SlotState::ready || (second && slot != selected && slot != *second);
+  });
   std::stable_partition(list.begin(), list.end(), [&](std::size_t slot) { return slot != selected; });
   return list;
 }
@@ -116,28 +133,48 @@ std::string data_warning(const ModelsView& models) {
 
 BigNumber big_number(const ModelsView& models) {
   BigNumber big;
+  if (models.slots.empty()) return big;
+  big.number = "–";
   const ModelView* active = models.active();
-  if (models.verdict.chosen) {
-    const ModelView& chosen = models.slots[*models.verdict.chosen];
-    big.error_over_jnd = chosen.errors.p99_error_over_jnd;
-    big.number = jnd_text(big.error_over_jnd);
-    big.what = "of what a hand can notice: the error of " + chosen.name;
-    if (active != nullptr && active->press_samples > 0 && models.selected != models.reference)
-      big.below = "this press: " + jnd_text(active->press_p99_over_jnd) + " with " + active->name;
-  } else if (active != nullptr && !models.compared) {
+  if (active == nullptr) return big;
+  if (!models.compared) {
     big.error_over_jnd = models.in_contact ? active->predicted_error_N / models.jnd.at(active->force_N) : std::nan("");
-    big.number = std::isnan(big.error_over_jnd) ? "–" : jnd_text(big.error_over_jnd);
-    big.what = "of what a hand can notice: 95 % bound of the error of " + active->name;
+    if (!std::isnan(big.error_over_jnd)) big.number = jnd_text(big.error_over_jnd);
+    big.what = "of a JND: 95 % bound of the error of " + active->name;
     big.below = models.reference_name;
+    return big;
   }
+  if (active->errors.samples > 0 && models.selected != models.reference && !active->refitting) {
+    big.error_over_jnd = active->errors.p99_error_over_jnd;
+    big.number = jnd_text(big.error_over_jnd);
+  }
+  big.what = "of a JND in 99 % of " + std::string(models.test_name.empty() ? "your presses" : "the test") + ": " +
+             active->name;
+  const double press = models.now.press_over_jnd[models.selected];
+  if (std::isnan(press) || models.selected == models.reference) return big;
+  big.press_over_jnd = press;
+  big.below = jnd_text(press) + " in this press";
   return big;
 }
 
+std::string table_csv(const ModelsView& models) {
+  std::string csv = "# " + models.counted + "\nmodel,centres,p99_error_over_jnd,within_jnd,tick_ns\n";
+  for (const std::size_t slot : models.listed()) {
+    const ModelView& one = models.slots[slot];
+    const auto number = [](bool known, double value) { return known ? general(value, 6) : std::string(); };
+    csv += one.name + "," + std::to_string(one.centres) + "," +
+           number(one.errors.samples > 0, one.errors.p99_error_over_jnd) + "," +
+           number(one.errors.samples > 0, one.errors.within_jnd) + "," + number(one.tick_ns() > 0.0, one.tick_ns()) +
+           "\n";
+  }
+  return csv;
+}
+
 WindowView window_view(const LiveSession& session, const ViewState& view) {
-  static std::uint64_t made = 0;
   WindowView shown;
-  shown.number = ++made;
-  shown.models = models_view(session, view.time.end_s(std::numeric_limits<double>::infinity()));
+  shown.history = view.worst && view.worst->history ? view.worst->history.get() : &session.comparison().history();
+  if (view.worst) shown.of_test = view.worst->history;
+  shown.models = models_view(session, view, *shown.history);
   shown.health = {.loop = session.loop().statistics(),
                   .scheduling = session.loop().scheduling(),
                   .newest = session.newest(),
@@ -145,14 +182,32 @@ WindowView window_view(const LiveSession& session, const ViewState& view) {
                   .faults = session.faults().events(),
                   .alarms = session.alarms(),
                   .device_name = session.device_name()};
+  shown.scene = session.scene().name;
+  shown.title = session.scene().title;
+  shown.description = session.scene().description;
+  shown.device_words = session.device_words();
+  shown.has_material = session.scene().has_material();
+  shown.has_tool = session.tool_input() != nullptr;
+  shown.hand_explores = shown.has_tool && session.tool_input()->hand_is_exploring();
+  shown.renders_force = session.renders_force();
+  shown.settled = session.models().all_settled();
+  shown.scale = session.controls().scale;
+  shown.recording = session.recording();
+  if (const ReplayControl* replay = session.replay()) {
+    shown.replay = ReplayView{replay->playhead_s(), replay->duration_s(),     replay->speed(),
+                              replay->paused(),     session.test().found_m(), session.test().moved()};
+  }
   const std::size_t blocks = view.settings.blocks;
-  const bool reference = blocks > 1 && session.comparison().reference() != ReferenceKind::model;
-  shown.blocks = slots_of_blocks(shown.models, reference, blocks);
+  const bool has_truth = session.comparison().reference() != ReferenceKind::model;
+  if (view.material && has_truth && blocks == 1) {
+    shown.blocks = {kReferenceBlock};
+  } else {
+    shown.blocks = slots_of_blocks(shown.models, has_truth && blocks > 1, blocks == 2 ? 3 : blocks);
+  }
   shown.reference_block = reference_block(session);
   shown.reference_words = session.reference_words();
   shown.usual_force_N = kUsualOverStrongest * session.scene().strongest_press_N;
   shown.usual_depth_m = session.models().trained_depth_m();
-  shown.history = &session.comparison().history();
   const bool stands = session.replay() != nullptr && session.replay()->paused() && shown.history->size() > 0;
   shown.now_s = stands ? (*shown.history)[shown.history->size() - 1].loop_time_s : steady_now_s();
   return shown;

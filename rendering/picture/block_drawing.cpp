@@ -98,10 +98,6 @@ void BlockView::draw_still(std::size_t count, Theme theme) {
       first = part;
     }
   }
-  const Viewport whole{0, 0, still_.width, still_.height};
-  still_pixels_.copy_to(&pixels_, whole, whole);
-  drawn_.clear();
-  drawn_parts_.clear();
 }
 
 // The static parts of a block, with its surface at rest.

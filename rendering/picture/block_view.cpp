@@ -128,7 +128,7 @@ BlockView::Cells BlockView::cells(std::size_t count, const glm::vec2& size) cons
   const float height = size.y * (1.0F - above_ - below_);
   Cells best;
   float largest = 0.0F;
-  for (std::size_t columns = 1; columns <= count; ++columns) {
+  for (std::size_t columns = one_row_ ? count : 1; columns <= count; ++columns) {
     const std::size_t rows = (count + columns - 1) / columns;
     const glm::vec2 one =
         glm::floor(glm::vec2(size.x / static_cast<float>(columns), height / static_cast<float>(rows)));
@@ -152,6 +152,16 @@ glm::vec2 BlockView::corner(std::size_t index, std::size_t count, const Cells& c
   const float left = 0.5F * (size.x - static_cast<float>(in_row) * cells.size.x);
   return glm::floor(glm::vec2(left + static_cast<float>(index % cells.columns) * cells.size.x,
                               cells.top + static_cast<float>(row) * cells.size.y));
+}
+
+std::size_t BlockView::cell_at(const glm::vec2& point, std::size_t count, const glm::vec2& size) const {
+  const Cells grid = cells(count, size);
+  const float row = std::max(0.0F, (point.y - grid.top) / std::max(grid.size.y, 1.0F));
+  const std::size_t first = std::min(static_cast<std::size_t>(row), grid.rows - 1) * grid.columns;
+  const std::size_t end = std::min(first + grid.columns, count);
+  const float left = corner(first, count, grid, size).x;
+  const float column = std::max(0.0F, (point.x - left) / std::max(grid.size.x, 1.0F));
+  return std::min(first + static_cast<std::size_t>(column), end - 1);
 }
 
 void BlockView::show(std::size_t count, const glm::vec2& size, bool at_once) {
@@ -227,47 +237,12 @@ Viewport BlockView::part_around(const glm::vec3& low, const glm::vec3& high) con
   return grown(least, most, cell_);
 }
 
-// The part of a cell that is drawn in each frame: the block without its rim, and the tool with arrows and halo.
-Viewport BlockView::moving_part(const BlockPose& pose) const {
-  const glm::vec2 tip = in_cell({0.0F, -drawn_m(pose.tool_m), 0.0F});
-  const float arrows = std::max(pose.force_N, pose.shows_truth ? pose.true_force_N : 0.0F);
-  const glm::vec2 surface = in_cell({0.0F, 0.0F, 0.0F});
-  const float line = line_px();
-  glm::vec2 low = glm::min(tip + tool_low_, surface - line), high = glm::max(tip + tool_high_, surface + line);
-  if (arrows > kShortestArrow_N) {
-    low = glm::min(low, surface - glm::vec2(0.0F, arrow_px(arrows) + line));
-    high = glm::max(high, surface + glm::vec2(radius_m_ * px_per_m_ * (kModelArrow + 3.0F * kModelArrowWidth), line));
-  }
-  if (const float halo = halo_px(pose); halo > 0.0F) {
-    const glm::vec2 ball = in_cell({0.0F, radius_m_ - drawn_m(pose.dent_m), 0.0F});
-    low = glm::min(low, ball - halo - line);
-    high = glm::max(high, ball + halo + line);
-  }
-  return around_both(grown(low, high, cell_),
-                     part_around({-middle_m_, -size_m_.y, -middle_m_}, {middle_m_, 0.0F, 0.0F}));
-}
-
-// From the picture to the window, whose origin is at the lower left.
-Viewport BlockView::in_window(const Viewport& part) const {
-  return {viewport_.x + part.x, viewport_.y + viewport_.height - part.y - part.height, part.width, part.height};
-}
-
-void BlockView::copy_to_window(const Viewport& part) const {
-  const Viewport shown = common_part(part, viewport_);
-  if (shown.empty()) return;
-  const int top = viewport_.height - (shown.y - viewport_.y) - shown.height;
-  pixels_.copy_to(nullptr, {shown.x - viewport_.x, top, shown.width, shown.height}, shown);
-  glBindFramebuffer(GL_FRAMEBUFFER, 0);
-}
-
-std::vector<Viewport> BlockView::draw(const std::vector<BlockPose>& blocks, const Viewport& viewport, Theme theme) {
-  if (viewport.width < 1 || viewport.height < 1 || blocks.empty()) return {};
+void BlockView::draw(const std::vector<BlockPose>& blocks, const Viewport& viewport, Theme theme) {
+  if (viewport.width < 1 || viewport.height < 1 || blocks.empty()) return;
   const int width = viewport.width, height = viewport.height;
-  bool all = viewport != viewport_;
-  viewport_ = viewport;
   const glm::vec2 size(width, height);
   const Cells grid = cells(blocks.size(), size);
-  cell_ = grid.size;
+  cell_ = glm::max(grid.size, 1.0F);
   view_projection_ =
       glm::scale(glm::mat4(1.0F), glm::vec3(1.0F, -1.0F, 1.0F)) * camera_.view_projection(cell_.x / cell_.y);
   px_per_m_ = glm::length(in_cell({0.0F, 0.01F, 0.0F}) - in_cell(glm::vec3(0.0F))) / 0.01F;
@@ -275,33 +250,21 @@ std::vector<Viewport> BlockView::draw(const std::vector<BlockPose>& blocks, cons
   const Still now{view_projection_, width, height, blocks.size(), theme, above_, below_};
   if (now != still_) {
     still_ = now;
-    all = true;
-    pixels_.draw_into(width, height);
     draw_still(blocks.size(), theme);
   }
   pixels_.draw_into(width, height);
-  drawn_parts_.resize(blocks.size());
-  std::vector<Viewport> changed;
+  const Viewport whole{0, 0, width, height};
+  still_pixels_.copy_to(&pixels_, whole, whole);
+  pixels_.draw_into(width, height);
   for (std::size_t i = 0; i < blocks.size(); ++i) {
-    if (i < drawn_.size() && drawn_[i] == blocks[i]) continue;
     const glm::vec2 at = corner(i, blocks.size(), grid, size);
-    const int x = static_cast<int>(at.x), y = static_cast<int>(at.y);
-    const Viewport now_moving = moving_part(blocks[i]);
-    Viewport part = around_both(now_moving, drawn_parts_[i]);
-    drawn_parts_[i] = now_moving;
-    part.x += x;
-    part.y += y;
-    still_pixels_.copy_to(&pixels_, part, part);
-    changed.push_back(in_window(part));
-    pixels_.draw_into(width, height);
-    glViewport(x, y, static_cast<int>(cell_.x), static_cast<int>(cell_.y));
+    glViewport(static_cast<int>(at.x), static_cast<int>(at.y), static_cast<int>(cell_.x), static_cast<int>(cell_.y));
     draw_moving(blocks[i]);
   }
-  drawn_ = blocks;
   glFrontFace(GL_CCW);
   glBindVertexArray(0);
+  pixels_.copy_to(nullptr, whole, viewport);
   glBindFramebuffer(GL_FRAMEBUFFER, 0);
-  return all ? std::vector{viewport} : changed;
 }
 
 }  // namespace palpate

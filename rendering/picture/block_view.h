@@ -10,12 +10,58 @@
 #include <vector>
 
 #include "engine/base/result.h"
-#include "rendering/picture/camera.h"
 #include "rendering/picture/gpu.h"
 #include "rendering/ui/colours.h"
 #include "scenes/scene/scene.h"
 
 namespace palpate {
+
+// The user's rotation and zoom relative to the basic view. They are kept when the basic view changes.
+struct CameraTurn {
+  float yaw_rad = 0.0F;
+  float pitch_rad = 0.0F;
+  float distance = 1.0F;  // factor
+  bool operator==(const CameraTurn&) const = default;
+};
+
+// A camera that orbits a point above the table within limits and moves smoothly to its target.
+class Camera {
+ public:
+  static constexpr float kFieldOfView_rad = 0.55F;  // of the smaller side of the picture
+
+  // Sets the basic view: what is within `radius_m` of the point at `height_m` above the middle fills the picture, seen
+  // from `yaw_rad` to the right of the front and `pitch_rad` above it. `at_once`: without a transition.
+  void frame(float radius_m, float height_m, float yaw_rad, float pitch_rad, bool at_once);
+  void orbit(float yaw_rad, float pitch_rad);
+  // Multiplies the distance by `factor`.
+  void zoom(float factor);
+  // Returns to the basic view.
+  void go_home() { turn({}); }
+  CameraTurn turned() const noexcept { return turn_; }
+  void turn(const CameraTurn& turn);
+  // Moves towards the target, with a time constant of 0.12 s.
+  void advance(float seconds);
+
+  glm::vec3 eye() const;
+  glm::mat4 view_projection(float aspect) const;
+
+ private:
+  struct Pose {
+    float yaw_rad = 0.0F;
+    float pitch_rad = 0.3F;
+    float distance_m = 0.4F;
+    float height_m = 0.0F;
+  };
+  void aim();  // computes `target_` from `framed_` and `turn_`
+  Pose now_;
+  Pose target_;
+  Pose framed_;
+  CameraTurn turn_;
+  float radius_m_ = 0.1F;
+};
+
+// The position of `world` in a viewport of `size` pixels, y down; far outside when it is behind the camera.
+glm::vec2 project(const glm::mat4& view_projection, const glm::vec3& world, const glm::vec2& size);
 
 // The state of one block and its probe.
 struct BlockPose {
@@ -42,18 +88,19 @@ class BlockView {
   // `magnified`: see kDeeperDents. Errors: a shader is missing or does not compile.
   static Result<std::unique_ptr<BlockView>> create(const Scene& scene, float magnified = kDeeperDents);
 
+  // All blocks are in one row, so that one stroke of the pointer passes beside none of them.
+  void in_one_row(bool one_row) noexcept { one_row_ = one_row; }
   // Leaves these shares of the height of the picture free at its upper and lower edge.
   void leave_free(float above, float below) noexcept { above_ = above, below_ = below; }
   // Arranges `count` blocks in a picture of `size` and turns the camera to them, with a transition unless `at_once`.
   void show(std::size_t count, const glm::vec2& size, bool at_once);
-  // Draws 1 to kMostBlocks blocks for a part of the window. Returns the parts of the window, with the origin at its
-  // lower left corner, that have changed since the last call; only they are drawn.
-  std::vector<Viewport> draw(const std::vector<BlockPose>& blocks, const Viewport& viewport, Theme theme);
-  // Copies what was drawn there to a part of the window.
-  void copy_to_window(const Viewport& part) const;
+  // Draws 1 to kMostBlocks blocks into a part of the window, with the origin at its lower left corner.
+  void draw(const std::vector<BlockPose>& blocks, const Viewport& viewport, Theme theme);
 
   Camera& camera() noexcept { return camera_; }
 
+  // The block whose cell, with the air above it, has this point of a picture of `size`; the nearest cell of its row.
+  std::size_t cell_at(const glm::vec2& point, std::size_t count, const glm::vec2& size) const;
   // Pixel position (y down) in a picture of `size` of a point relative to the middle of the top of block `index`.
   glm::vec2 on_screen(std::size_t index, std::size_t count, const glm::vec3& point, const glm::vec2& size) const;
   // The point below the middle of the block, and the width of the picture of a block.
@@ -102,7 +149,6 @@ class BlockView {
   float halo_px(const BlockPose& pose) const;
   float opacity_of_error(const BlockPose& pose) const;
   Viewport part_around(const glm::vec3& low, const glm::vec3& high) const;
-  Viewport moving_part(const BlockPose& pose) const;
   void begin(const Shader& shader) const;
   void begin_block(const Shader& shader) const;
   void set_dent(const Shader& shader, float depth_m) const;
@@ -114,7 +160,6 @@ class BlockView {
   void draw_line(const BlockPose& pose) const;
   void draw_arrow(float from_middle, float force_N, float half_width, const Rgb& colour) const;
   void draw_flat(const Shader& shader, const glm::vec2& origin, const glm::vec2& low, const glm::vec2& high) const;
-  Viewport in_window(const Viewport& part) const;
 
   glm::vec3 size_m_;  // width, height, length
   float magnified_;
@@ -128,6 +173,7 @@ class BlockView {
   Rgb block_colour_;
   float arrow_m_per_N_;
   float above_ = 0.0F, below_ = 0.0F;
+  bool one_row_ = false;
   Shaders shaders_;
   // Static parts.
   GpuMesh top_, sides_, section_, square_, ball_, sensor_, handle_;
@@ -137,13 +183,10 @@ class BlockView {
   // A cell with twice the pixels per side; the static parts of all cells; the picture; the tool, also twice.
   Pixels fine_{true}, still_pixels_{false}, pixels_{false}, tool_{true};
   Still still_;
-  Viewport viewport_;
   glm::mat4 view_projection_{1.0F};
   glm::vec2 cell_{1.0F};  // pixels
   float px_per_m_ = 1.0F;
   glm::vec2 tool_low_{0.0F}, tool_high_{0.0F};  // of the picture of the tool, relative to the tip's, pixels
-  std::vector<BlockPose> drawn_;
-  std::vector<Viewport> drawn_parts_;  // of each block, in its cell
 };
 
 }  // namespace palpate

@@ -1,4 +1,4 @@
-#include "rendering/picture/shapes.h"
+#include "rendering/picture/gpu.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,5 @@
 // All colours with a meaning: methods, reference, error scale, themes.
-// Sources: Okabe & Ito (2008) for the methods; the error scale ends in a green of viridis (van der Walt & Smith 2015,
-// CC0).
+// Source of the hues of the methods: Okabe & Ito (2008).
 // Thread guarantee: pure functions.
 #pragma once
 
@@ -39,20 +38,19 @@ double contrast(const Rgb& a, const Rgb& b) noexcept;
 inline constexpr double kLeastContrast = 3.0;
 inline constexpr double kLeastTextContrast = 4.5;
 
-// The colour of a method (method_rgb in scenes/scene/scene.h), changed as far as the contrast to the background, the
-// panel, its controls and the JND band requires. Methods without a hue and unknown names are black, or white in the
-// dark theme. Above 0, `which` gives a shade of it for a further model of the method.
+// The shade of a method's hue (method_rgb in scenes/scene/scene.h) in this theme. Methods without a hue and unknown
+// names are black, or white in the dark theme. Above 0, `which` gives another shade for a further model of the method.
 Rgb method_colour(std::string_view method, Theme theme, std::size_t which = 0);
-// The measured or true force; changed in the same way.
+// The measured or true force.
 Rgb reference_colour(Theme theme) noexcept;
 // A shade of any colour in which text can be read.
 Rgb text_colour(const Rgb& colour, Theme theme) noexcept;
 // The outline of arrows, probe and dent on a block of this colour: nearly black, or nearly white on a dark block.
 Rgb outline_on(const Rgb& block) noexcept;
 
-// Error over the JND: a perceptually uniform scale from nearly white (0) to green (1), and magenta above 1, which
-// neither the scale nor any block contains.
+// Error over the JND: a scale from paper-white (0) over yellow to dark red (1), and violet above 1, which neither the
+// scale nor any block contains. Green is the truth only.
 Rgb error_colour(double error_over_jnd) noexcept;
-inline constexpr Rgb kAboveJndColour{0.93F, 0.10F, 0.55F};
+inline constexpr Rgb kAboveJndColour = hex(0xB14AED);
 
 }  // namespace palpate

@@ -107,24 +107,58 @@ void LivePlot::draw_x_axis() const {
   const double first = std::ceil(x_range.from / x_step - 1e-9) * x_step;
   const double steps = std::floor((x_range.to - first) / x_step + 1e-9);
   float free_px = high_.x + 2.0F * line;
+  bool unit_follows = true;
   for (double i = steps; i >= 0.0; i -= 1.0) {
     const double x = first + i * x_step;
     list_->AddLine({std::round(x_px(x)), low_.y}, {std::round(x_px(x)), high_.y}, ink(style_.colours().grid));
-    const bool last = i == steps;
-    std::snprintf(text, sizeof text, "%.7g%s%s", shown(x), last ? " " : "", last ? axes_.x_unit : "");
+    if (x < axes_.x_least) continue;
+    std::snprintf(text, sizeof text, "%.7g%s%s", shown(x), unit_follows ? " " : "", unit_follows ? axes_.x_unit : "");
     const ImVec2 size = ImGui::CalcTextSize(text);
     const float at = std::clamp(x_px(x) - 0.5F * size.x, low_.x - 1.5F * line, high_.x + 0.6F * line - size.x);
     if (at + size.x + 0.4F * line > free_px) continue;
     free_px = at;
+    unit_follows = false;
     list_->AddText({at, high_.y + 0.15F * line}, ink(style_.colours().quiet), text);
   }
 }
 
-void LivePlot::line(const std::vector<ImVec2>& all, ImU32 colour, float thickness) const {
+void LivePlot::line(const std::vector<ImVec2>& all, ImU32 colour, float thickness, const Dashes& dashes,
+                    float start_px) const {
   const std::vector<ImVec2> points = simplified(all);
   // For a whole thickness ImGui draws one textured strip, else three strips.
   const float whole = std::max(1.0F, std::round(thickness));
+  if (points.size() > 1 && dashes.gap > 0.0F) return dashed(points, colour, whole, dashes, start_px);
   if (points.size() > 1) list_->AddPolyline(points.data(), static_cast<int>(points.size()), colour, 0, whole);
+}
+
+// Cuts the line at the x where dashes begin and end. A steep piece is drawn as a whole, so that a peak is no dot.
+void LivePlot::dashed(const std::vector<ImVec2>& points, ImU32 colour, float thickness, const Dashes& dashes,
+                      float start_px) const {
+  const float period = dashes.dash + dashes.gap;
+  std::vector<ImVec2> piece;
+  const auto flush = [&] {
+    if (piece.size() > 1) list_->AddPolyline(piece.data(), static_cast<int>(piece.size()), colour, 0, thickness);
+    piece.clear();
+  };
+  for (std::size_t i = 0; i + 1 < points.size(); ++i) {
+    const ImVec2 to = points[i + 1];
+    for (ImVec2 at = points[i];;) {
+      const float phase = at.x - start_px - period * std::floor((at.x - start_px) / period);
+      const bool in_dash = phase < dashes.dash, drawn = in_dash || std::abs(to.y - at.y) > 4.0F * (to.x - at.x);
+      // A little beyond the border, so that every step gets on.
+      const float border = at.x + (in_dash ? dashes.dash : period) - phase + 0.01F;
+      const bool last = border >= to.x;
+      const float share = last ? 1.0F : (border - at.x) / (to.x - at.x);
+      const ImVec2 next = last ? to : ImVec2(border, at.y + share * (to.y - at.y));
+      if (drawn && piece.empty()) piece.push_back(at);
+      if (drawn) piece.push_back(next);
+      if (!drawn) flush();
+      if (last) break;
+      if (drawn) flush();
+      at = next;
+    }
+  }
+  flush();
 }
 
 void LivePlot::band(const std::vector<ImVec2>& upper, const std::vector<ImVec2>& lower, ImU32 colour) const {
@@ -149,10 +183,6 @@ void LivePlot::jnd_band(double from, double to) const {
 
 void LivePlot::level(double y, ImU32 colour, float thickness) const {
   list_->AddLine({low_.x, y_px(y)}, {high_.x, y_px(y)}, colour, thickness);
-}
-
-void LivePlot::caption(const char* text, float top_px) const {
-  list_->AddText({low_.x + 0.2F * ImGui::GetFontSize(), top_px}, ink(style_.colours().quiet), text);
 }
 
 }  // namespace palpate

@@ -6,7 +6,7 @@
 
 #include <vector>
 
-#include "rendering/ui/ui_style.h"
+#include "rendering/ui/ui.h"
 
 namespace palpate {
 
@@ -27,7 +27,13 @@ struct PlotAxes {
   Range x, y;
   const char* x_unit = "";  // appended to the last label
   const char* y_unit = "";
-  bool decades = false;  // coordinates are decimal logarithms of the labelled values
+  bool decades = false;   // coordinates are decimal logarithms of the labelled values
+  double x_least = -1e9;  // labels below it are left out
+};
+
+// Lengths of the pieces of a dashed line along x and of the gaps after them, pixels; without a gap it is solid.
+struct Dashes {
+  float dash = 0.0F, gap = 0.0F;
 };
 
 class LivePlot {
@@ -50,14 +56,14 @@ class LivePlot {
   bool hovered() const noexcept;
   ImDrawList& list() const noexcept { return *list_; }
 
-  void line(const std::vector<ImVec2>& points, ImU32 colour, float thickness) const;
+  // `start_px`: the x at which a dash begins, on the plot or not.
+  void line(const std::vector<ImVec2>& points, ImU32 colour, float thickness, const Dashes& dashes = {},
+            float start_px = 0.0F) const;
   // Fills the area between two curves with the same x values.
   void band(const std::vector<ImVec2>& upper, const std::vector<ImVec2>& lower, ImU32 colour) const;
   // Fills a range of y over the whole width: the differences below one JND.
   void jnd_band(double from, double to) const;
   void level(double y, ImU32 colour, float thickness) const;
-  // Secondary text at the left edge of the frame.
-  void caption(const char* text, float top_px) const;
 
  protected:
   const UiStyle& style_;
@@ -65,6 +71,8 @@ class LivePlot {
  private:
   double shown(double value) const noexcept;  // the number of a label
   void draw_y_axis() const;
+  void dashed(const std::vector<ImVec2>& points, ImU32 colour, float thickness, const Dashes& dashes,
+              float start_px) const;
   void draw_x_axis() const;
 
   ImDrawList* list_;

@@ -78,8 +78,6 @@ ModelFigures Comparison::figures(std::size_t slot) const {
   const Slot& one = slots_[slot];
   ModelFigures figures;
   figures.errors = one.errors.summary(jnd_);
-  figures.press_samples = figures.errors.samples;
-  figures.press_p99_over_jnd = figures.errors.p99_error_over_jnd;
   figures.dent_m = one.dent.depth_m();
   figures.recent_error_over_jnd = one.dent.error_over_jnd();
   return figures;
@@ -136,6 +134,10 @@ HistoryPoint Comparison::point_of(const LoopSnapshot& snapshot, const PublishedS
 }
 
 void Comparison::count(HistoryPoint& point, const LoopSnapshot& snapshot, const PublishedSet& set, double step_s) {
+  // A press ends with a while in the air, not with a loss of contact by noise.
+  constexpr double kPause_s = 0.2;
+  const bool new_press = point.in_contact && !(std::abs(point.time_s - last_contact_s_) < kPause_s);
+  if (point.in_contact) last_contact_s_ = point.time_s;
   // Where one model is outside its training domain, the sample counts for no model.
   bool outside = false;
   for (const auto& [slot, i] : set.models) {
@@ -144,7 +146,11 @@ void Comparison::count(HistoryPoint& point, const LoopSnapshot& snapshot, const 
     const bool known = !std::isnan(difference);
     Slot& its = slots_[slot];
     its.sustained_over_jnd = its.sustained.add(point.time_s, known ? difference : 0.0);
-    if (known) point.sustained_over_jnd[slot] = static_cast<float>(its.sustained_over_jnd);
+    if (new_press) its.press_over_jnd = 0.0;
+    if (!known) continue;
+    if (point.in_contact) its.press_over_jnd = std::max(its.press_over_jnd, std::abs(its.sustained_over_jnd));
+    point.sustained_over_jnd[slot] = static_cast<float>(its.sustained_over_jnd);
+    point.press_over_jnd[slot] = static_cast<float>(its.press_over_jnd);
   }
   // A snapshot of an earlier set lacks the models that joined since.
   if (&set != models_.newest_set() || std::isnan(point.reference_N) || outside || !point.counts) return;

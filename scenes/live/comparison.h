@@ -1,26 +1,118 @@
 // Compares the models of a session with a reference force, tick by tick. It has, for every slot, the errors of these
-// ticks, the sustained error and the dent that is drawn.
-// Thread guarantee: one thread.
+// ticks, the sustained error, the dent that is drawn, and the forces of the last kHistory_s at 1 kHz for curves: one
+// point per tick that read a sample. Thread guarantee: one thread.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <map>
+#include <memory>
 #include <utility>
 #include <vector>
 
 #include "engine/live/live_tick.h"
 #include "engine/tick/features.h"
+#include "engine/tick/haptics_tick.h"
 #include "engine/tick/jnd.h"
 #include "scenes/evaluation/evaluate.h"
 #include "scenes/evaluation/model_errors.h"
 #include "scenes/live/fault_log.h"
-#include "scenes/live/force_history.h"
 #include "scenes/live/session_models.h"
+#include "scenes/material/material.h"
 
 namespace palpate {
+
+inline constexpr double kHistory_s = 60.0;
+
+// The force that the models are compared with.
+enum class ReferenceKind : std::uint8_t {
+  measured,  // of the device's force sensor, or of the recording that is replayed
+  truth,     // of the scene's virtual material under the same tool
+  model,     // of the model SessionModels::reference: there is no true force
+};
+
+inline constexpr float kMissing = std::numeric_limits<float>::quiet_NaN();
+constexpr std::array<float, kMaxModels> no_values() noexcept {
+  std::array<float, kMaxModels> values{};
+  values.fill(kMissing);
+  return values;
+}
+
+// Values are NaN where there is none.
+struct HistoryPoint {
+  double loop_time_s = 0.0;  // steady clock
+  double time_s = 0.0;       // device time; the time in the recording where one is replayed
+  float position_m = 0.0F;   // of the tool; negative in the air
+  float depth_m = 0.0F;
+  float reference_N = kMissing;
+  float rendered_N = 0.0F;
+  float predicted_error_N = kMissing;  // 95 %, of the active model
+  bool in_contact = false;
+  bool counts = true;          // in contact, valid sample, filters settled; see comparison.h for the rest
+  bool out_of_domain = false;  // of the active model
+  std::uint8_t active = 0;     // its slot
+  TickFaultLevel fault_level = TickFaultLevel::none;
+  // By slot: the force; the mean over 50 ms of (model - reference) / JND (SustainedError), signed; its largest
+  // magnitude since this press began.
+  std::array<float, kMaxModels> force_N = no_values(), sustained_over_jnd = no_values(), press_over_jnd = no_values();
+  std::uint16_t other_material = 0;  // bit per slot: a model of another material, which is not compared
+
+  // (model - reference) / JND of this tick; 0 in the air, NaN without a comparison.
+  double difference_over_jnd(std::size_t slot, const JndLine& jnd) const noexcept {
+    const bool none = std::isnan(reference_N) || std::isnan(force_N[slot]) || (other_material >> slot & 1U) != 0;
+    if (none || (in_contact && !counts)) return std::numeric_limits<double>::quiet_NaN();
+    const double from_N = reference_N;
+    return in_contact ? (force_N[slot] - from_N) / jnd.at(from_N) : 0.0;
+  }
+};
+
+class ForceHistory {
+ public:
+  // `capacity`: allocated once, so that a session of hours does not grow; by default one point per millisecond.
+  explicit ForceHistory(std::size_t capacity = static_cast<std::size_t>(kHistory_s * 1000.0)) : points_(capacity) {}
+
+  std::size_t size() const noexcept { return size_; }
+  // 0 is the oldest.
+  const HistoryPoint& operator[](std::size_t index) const noexcept {
+    const std::size_t at = first_ + index;
+    return points_[at < points_.size() ? at : at - points_.size()];
+  }
+  // Index of the first point at `loop_time_s` or later; size() if there is none. O(log size).
+  std::size_t first_at(double loop_time_s) const noexcept {
+    std::size_t from = 0;
+    for (std::size_t to = size_; from < to;) {
+      const std::size_t middle = from + (to - from) / 2;
+      const bool before = (*this)[middle].loop_time_s < loop_time_s;
+      (before ? from : to) = before ? middle + 1 : middle;
+    }
+    return from;
+  }
+  // The last point up to `loop_time_s`; null: there is none.
+  const HistoryPoint* last_until(double loop_time_s) const noexcept {
+    const std::size_t next = first_at(std::nextafter(loop_time_s, std::numeric_limits<double>::infinity()));
+    return next > 0 ? &(*this)[next - 1] : nullptr;
+  }
+  void forget(std::size_t slot) noexcept {
+    for (HistoryPoint& point : points_)
+      point.force_N[slot] = point.sustained_over_jnd[slot] = point.press_over_jnd[slot] = kMissing;
+  }
+  void append(const HistoryPoint& point) {
+    if (size_ < points_.size()) {
+      points_[size_++] = point;
+    } else {
+      points_[first_] = point;
+      first_ = (first_ + 1) % points_.size();
+    }
+  }
+
+ private:
+  std::vector<HistoryPoint> points_;
+  std::size_t first_ = 0, size_ = 0;
+};
 
 // The errors of one model over an endless stream of ticks: constant time per tick and bounded memory. The 99 % error
 // (scenes/evaluation/model_errors.h) is rounded up by at most 1.1 %, never across 1.
@@ -83,6 +175,33 @@ class Dent {
   double dent_m_ = 0.0, error_over_jnd_ = 0.0;
 };
 
+// The true force of a scene's virtual material under the same tool: the reference of a session without a force sensor.
+// A replayed recording has its own measured force instead.
+class TrueForce final : public ReferenceForce {
+ public:
+  explicit TrueForce(const Material& material) : block_(material.make_block()) {}
+
+  // At the first step, and at one with `restart`, the block is fully relaxed under the tool. The filters of the
+  // models begin in the same state.
+  double step(const TickSnapshot& snapshot, bool restart) noexcept override {
+    if (restart || !started_) {
+      block_->reset(snapshot.position_m);
+      time_s_ = snapshot.time_s;
+      started_ = true;
+      return block_->force_N();
+    }
+    // A time that is not later leaves the block and its force unchanged.
+    const double force_N = block_->step(snapshot.position_m, snapshot.velocity_m_per_s, snapshot.time_s - time_s_);
+    if (snapshot.time_s > time_s_) time_s_ = snapshot.time_s;
+    return force_N;
+  }
+
+ private:
+  std::unique_ptr<Block> block_;
+  double time_s_ = 0.0;
+  bool started_ = false;
+};
+
 // Time of a tick, ns, and 99 % error over the JND of a model with each number of centres that was tested.
 using CentresPath = std::map<int, std::pair<double, double>>;
 
@@ -92,16 +211,13 @@ struct ModelFigures {
   double force_N = 0.0;
   double predicted_error_N = std::numeric_limits<double>::quiet_NaN();  // of the force, 95 %; NaN: unknown
   bool out_of_domain = false;
-  // Over the same samples for all compared models: those of the test (model_test.h); without a recording to test on,
+  // Over the same samples for all compared models: those of the test (ModelTest); without a recording to test on,
   // those of the ticks (StreamErrors).
   ErrorSummary errors;
   Interval p99_interval{kUnknown, kUnknown};  // of the test
   Timing tick;                                // a whole tick with this model alone
   CentresPath path;
   double tick_ns() const noexcept { return tick.median_ns; }
-  // Of the ticks, the user's own presses.
-  std::uint64_t press_samples = 0;
-  double press_p99_over_jnd = 0.0;
   // Of the Dent: its depth, and the largest recent magnitude of the sustained error.
   double dent_m = 0.0, recent_error_over_jnd = 0.0;
 };
@@ -137,6 +253,7 @@ class Comparison {
     Dent dent;
     SustainedError sustained;
     double sustained_over_jnd = 0.0;  // in the last snapshot; ticks without a reference count as 0
+    double press_over_jnd = 0.0;      // its largest magnitude in this press
     StreamErrors errors;
   };
   HistoryPoint point_of(const LoopSnapshot& snapshot, const PublishedSet* set);
@@ -147,8 +264,9 @@ class Comparison {
   ReferenceKind reference_;
   std::vector<Slot> slots_{kMaxModels};
   double counted_s_ = 0.0;
-  bool settled_ = false;         // the feature filters have settled
-  double stream_began_s_ = 0.0;  // device time
+  double last_contact_s_ = -std::numeric_limits<double>::infinity();  // device time
+  bool settled_ = false;                                              // the feature filters have settled
+  double stream_began_s_ = 0.0;                                       // device time
   double begins_at_s_ = -std::numeric_limits<double>::infinity();
   double last_loop_time_s_ = 0.0;
   double last_time_s_ = 0.0;                           // device time

@@ -14,7 +14,8 @@
 namespace palpate {
 namespace {
 
-constexpr double kLongest_s = 60.0;  // of a trace
+constexpr double kLongest_s = 60.0;         // of a trace
+constexpr double kColumnOfTicks_s = 0.025;  // a longer gap between two ticks is a stall
 
 void replace(std::string& text, std::string_view sign, const std::string& by) {
   if (const std::size_t at = text.find(sign); at != std::string::npos) text.replace(at, sign.size(), by);
@@ -27,58 +28,47 @@ void ExhibitTrace::clear() {
   columns_.reserve(static_cast<std::size_t>(kLongest_s / kColumn_s));
 }
 
-void ExhibitTrace::add(const ExhibitTick& tick) {
+void ExhibitTrace::add(const ExhibitTick& tick, std::size_t level) {
   if (began_s_ < 0.0 && !tick.in_contact) return;
   if (began_s_ < 0.0) began_s_ = tick.loop_time_s;
   seconds_ = tick.loop_time_s - began_s_;
   const auto at = static_cast<std::size_t>(seconds_ / kColumn_s);
   if (seconds_ >= kLongest_s) return;
   if (columns_.size() <= at) columns_.resize(at + 1);
-  if (tick.out_of_domain || !std::isfinite(tick.first_N + tick.second_N + tick.over_jnd)) return;
+  const double over_jnd = tick.over_jnd[level];
+  if (tick.out_of_domain || !std::isfinite(tick.true_N + tick.model_N[level] + over_jnd)) return;
   Column& column = columns_[at];
   const double share = 1.0 / ++column.ticks;
-  column.first_N += share * (tick.first_N - column.first_N);
+  column.true_N += share * (tick.true_N - column.true_N);
   column.position_m += share * (tick.position_m - column.position_m);
-  if (column.ticks == 1 || std::abs(tick.over_jnd) > std::abs(column.over_jnd)) column.over_jnd = tick.over_jnd;
-  const bool strong = std::max(tick.first_N, tick.second_N) >= kStrong_N;
-  if (strong && !strong_) largest_ = 0.0;
-  strong_ = strong_ || strong;
-  if (strong == strong_ && std::abs(tick.over_jnd) > largest_) {
-    largest_ = std::abs(tick.over_jnd);
-    largest_at_ = at;
-  }
+  if (column.ticks == 1 || std::abs(over_jnd) > std::abs(column.over_jnd)) column.over_jnd = over_jnd;
+  if (std::abs(over_jnd) <= largest_) return;
+  largest_ = std::abs(over_jnd);
+  largest_at_ = at;
 }
 
-std::vector<ExhibitRound> ExhibitGame::rounds_of(const std::vector<ExhibitModel>& ready, bool has_reference,
-                                                 bool has_force) {
-  std::vector<ExhibitModel> models = ready;
+ExhibitLineUp ExhibitGame::line_up_of(const std::vector<ExhibitModel>& ready, bool has_reference, bool has_force) {
+  ExhibitLineUp line_up{{}, ready};
+  std::vector<ExhibitModel>& models = line_up.levels;
   std::ranges::stable_sort(
       models, {}, [](const ExhibitModel& one) { return one.paper ? one.centres : std::numeric_limits<int>::max(); });
-  while (models.size() > kMostRounds) models.erase(models.end() - 2);
-  std::optional<ExhibitModel> first;
+  while (models.size() > kExhibitLevels) models.erase(models.end() - 2);
   if (!models.empty() && (has_force || !has_reference)) {
-    first = models.back();
+    line_up.truth = models.back();
     models.pop_back();
   }
-  std::vector<ExhibitRound> rounds;
-  for (const ExhibitModel& model : models) rounds.push_back({first, model});
-  return rounds;
+  return line_up;
 }
 
-bool ExhibitGame::begin(const std::vector<ExhibitModel>& ready, bool has_reference, bool has_force, double press_s) {
-  std::vector<ExhibitRound> rounds = rounds_of(ready, has_reference, has_force);
-  if (rounds.empty()) return false;
-  if (has_force) {
-    rounds.resize(std::min(rounds.size(), kMostRounds - 1));
-    rounds.push_back({rounds.back().first, *rounds.back().first});
-    for (std::size_t i = rounds.size(); i > 1; --i) std::swap(rounds[i - 1], rounds[random_.index(i)]);
-    for (ExhibitRound& round : rounds)
-      if (random_.index(2) == 1) std::swap(*round.first, round.second);
-  }
-  rounds_ = std::move(rounds);
+bool ExhibitGame::begin(const std::vector<ExhibitModel>& ready, bool has_reference, bool has_force) {
+  ExhibitLineUp line_up = line_up_of(ready, has_reference, has_force);
+  if (line_up.levels.empty()) return false;
+  line_up_ = std::move(line_up);
+  rounds_.assign(line_up_.levels.size(), {});
+  for (ExhibitRound& round : rounds_) round.computer_is_left = random_.index(2) == 1;
   has_force_ = has_force;
-  press_s_ = press_s;
-  index_ = 0;
+  level_ = 0;
+  largest_ = {};
   begin_round();
   return true;
 }
@@ -91,58 +81,42 @@ void ExhibitGame::reset() {
 
 void ExhibitGame::begin_round() {
   trace_.clear();
-  chosen_ = 1;
-  pressed_ = {};
-  state_ = has_force_ ? State::press : State::guess;
-}
-
-void ExhibitGame::guess(bool noticed) {
-  if (state_ != State::guess) return;
-  rounds_[index_].answered = true;
-  rounds_[index_].said_noticed = noticed;
+  chosen_left_ = true;
+  pressed_s_ = {};
   state_ = State::press;
 }
 
-void ExhibitGame::choose(int key) noexcept {
-  if (state_ == State::press && has_force_ && (key == 1 || key == 2)) chosen_ = key;
-}
-
 const ExhibitModel& ExhibitGame::rendered() const noexcept {
-  const ExhibitRound& now = round();
-  return has_force_ && chosen_ == 1 ? *now.first : now.second;
+  const bool of_truth = has_force_ && chosen_left_ != round().computer_is_left;
+  return of_truth && line_up_.truth ? *line_up_.truth : computer();
 }
 
-void ExhibitGame::answer(bool different) {
-  if (state_ != State::press || !has_force_ || !pressed_both()) return;
-  rounds_[index_].answered = true;
-  rounds_[index_].said_noticed = different;
-  end_round();
+void ExhibitGame::answer(bool left) {
+  if (!can_answer()) return;
+  rounds_[level_].said_left = left;
+  state_ = State::reveal;
 }
 
 void ExhibitGame::add(const ExhibitTick& tick) {
+  const double step_s = std::clamp(tick.loop_time_s - std::exchange(last_s_, tick.loop_time_s), 0.0, kColumnOfTicks_s);
   if (state_ != State::press) return;
-  trace_.add(tick);
-  if (tick.in_contact) pressed_[chosen_ == 2 ? 1 : 0] = true;
-  if (!has_force_ && trace_.seconds() >= press_s_) end_round();
-}
-
-void ExhibitGame::end_round() {
-  rounds_[index_].largest_over_jnd = trace_.largest_over_jnd();
-  state_ = State::reveal;
+  trace_.add(tick, level_);
+  if (!tick.in_contact) return;
+  for (const bool left : {true, false})
+    if (!has_force_ || chosen_left_ == left) pressed_s_[left ? 0 : 1] += step_s;
+  if (tick.out_of_domain) return;
+  for (std::size_t i = 0; i < line_up_.levels.size(); ++i)
+    if (std::isfinite(tick.over_jnd[i])) largest_[i] = std::max(largest_[i], std::abs(tick.over_jnd[i]));
 }
 
 void ExhibitGame::go_on() {
   if (state_ != State::reveal) return;
-  if (index_ + 1 == rounds_.size()) {
+  if (level_ + 1 == rounds_.size()) {
     state_ = State::score;
     return;
   }
-  ++index_;
+  ++level_;
   begin_round();
-}
-
-std::size_t ExhibitGame::correct_answers() const noexcept {
-  return static_cast<std::size_t>(std::ranges::count_if(rounds_, &ExhibitRound::correct));
 }
 
 Result<ExhibitWords> ExhibitWords::parse(std::string_view text, const std::string& path) {
@@ -183,13 +157,16 @@ Result<std::vector<ExhibitWords>> read_exhibit_words(const std::string& folder) 
 ExhibitTally read_tally(const std::string& path) {
   ExhibitTally tally;
   std::istringstream file(read_whole_file(path).value_or(""));
-  if (!(file >> tally.answers >> tally.as_expected) || tally.as_expected > tally.answers) return {};
+  for (std::size_t i = 0; i < kExhibitLevels; ++i)
+    if (!(file >> tally.answers[i] >> tally.fooled[i]) || tally.fooled[i] > tally.answers[i]) return {};
   return tally;
 }
 
 Status write_tally(const std::string& path, const ExhibitTally& tally) {
-  return write_file_atomically(path, std::to_string(tally.answers) + " " + std::to_string(tally.as_expected) + "\n",
-                               true);
+  std::string text;
+  for (std::size_t i = 0; i < kExhibitLevels; ++i)
+    text += std::to_string(tally.answers[i]) + " " + std::to_string(tally.fooled[i]) + "\n";
+  return write_file_atomically(path, text, true);
 }
 
 }  // namespace palpate

@@ -5,14 +5,13 @@
 #include <filesystem>
 #include <string_view>
 
-#include "devices/bridge/bridge_bus.h"
 #include "devices/virtual/simulated_devices.h"
 #include "engine/base/text.h"
 #include "engine/live/pacer.h"
 #include "models/model/fitted_model.h"
 #include "models/samples/recording_faults.h"
-#include "scenes/live/session_recordings.h"
-#include "scenes/live/true_force.h"
+#include "scenes/evaluation/evaluate.h"
+#include "scenes/live/session_recorder.h"
 #include "scenes/material/rig.h"
 #include "scenes/scene/scene.h"
 
@@ -113,7 +112,6 @@ ModelTest::MakeRecording LiveSession::make_test(std::optional<Recording> part) c
 
 Result<std::unique_ptr<LiveSession>> LiveSession::open(const SessionRequest& request) {
   const double began_s = steady_now_s();
-  if (request.remote_bridges) allow_remote_bridges();
   Result<Scene> scene = load_scene(request.scene.empty() ? "silicone_block" : request.scene);
   if (!scene) return scene.error();
   DeviceRequest device_request{.calibrations = calibrations_folder(), .bus = request.bus};
@@ -170,7 +168,8 @@ Status LiveSession::begin(const std::vector<ModelRequest>& plans) {
   settings.realtime = request_.realtime;
   loop_ = std::make_unique<HapticsLoop>(*device_, settings);
   recorder_ = std::make_unique<SessionRecorder>(*loop_);
-  if (std::string note = device_->note(); !note.empty()) notices_.push_back({std::move(note), false});
+  if (std::string note = device_->note(); !note.empty() && !request_.known_device)
+    notices_.push_back({std::move(note), false});
   if (set_apart_)
     notices_.push_back(
         {"The end of " + test_file() + " is set apart: models are fitted to the rest and tested on it.", false});
@@ -234,6 +233,11 @@ void LiveSession::treat_as_this_material(std::size_t slot) {
   comparison_.forget_errors();
 }
 
+void LiveSession::add_model(const std::string& name) {
+  models_.add(name);
+  publish();
+}
+
 void LiveSession::use_line_up(const std::string& name) {
   const LineUp* line_up = find_line_up(name);
   if (line_up == nullptr || !scene_.has_material()) return;
@@ -291,14 +295,100 @@ ModelFigures LiveSession::figures(std::size_t slot) const {
   return figures;
 }
 
+std::optional<LiveSession::Worst> LiveSession::worst(std::size_t slot, bool of_test, double zero_s) const {
+  if (slot >= models_.size() || models_.info(slot).state != SlotState::ready) return std::nullopt;
+  if (const Recording* recording = of_test ? test_.recording() : nullptr)
+    return worst_of_test(slot, *recording, zero_s);
+  const ForceHistory& history = comparison_.history();
+  float largest = 0.0F;
+  std::size_t at = history.size();
+  for (std::size_t i = 0; i < history.size(); ++i) {
+    const float error = std::abs(history[i].sustained_over_jnd[slot]);
+    if (!history[i].counts || !(error > largest)) continue;
+    largest = error;
+    at = i;
+  }
+  if (at == history.size()) return std::nullopt;
+  const auto motion = motion_at(at, history.size(), [&](std::size_t i) {
+    return std::pair(history[i].loop_time_s, static_cast<double>(history[i].position_m));
+  });
+  return Worst{false, motion_words(motion), history[at].loop_time_s, nullptr};
+}
+
+// Replays the test twice: to find the moment, and to keep the ticks around it.
+std::optional<LiveSession::Worst> LiveSession::worst_of_test(std::size_t slot, const Recording& recording,
+                                                             double zero_s) const {
+  constexpr double kBefore_s = 6.0, kAfter_s = 2.0;
+  const std::vector<std::size_t> slots = models_.ready_slots();
+  const double begin_s = recording.rows.front().time_s;
+  // Calls `use` with every tick and its row.
+  const auto each_tick = [&](const auto& use) {
+    std::vector<SustainedError> errors(slots.size());
+    std::array<float, kMaxModels> press{};
+    double contact_s = -std::numeric_limits<double>::infinity();
+    std::size_t index = 0;
+    (void)palpate::replay(
+        recording, models_.ready_models(),
+        [&](const RecordingRow& row, const TickSnapshot& tick, const auto&) {
+          HistoryPoint point;
+          point.loop_time_s = zero_s + row.time_s - begin_s;
+          point.time_s = row.time_s;
+          point.position_m = static_cast<float>(tick.position_m);
+          point.depth_m = static_cast<float>(tick.depth_m);
+          point.reference_N = static_cast<float>(row.force_N);
+          point.in_contact = tick.in_contact;
+          point.active = static_cast<std::uint8_t>(slot);
+          if (tick.in_contact && row.time_s - contact_s > 0.2) press = {};
+          if (tick.in_contact) contact_s = row.time_s;
+          for (std::size_t i = 0; i < slots.size(); ++i) {
+            const std::size_t its = slots[i];
+            point.force_N[its] = static_cast<float>(tick.force_N[i]);
+            const double difference = point.difference_over_jnd(its, scene_.jnd);
+            point.sustained_over_jnd[its] = static_cast<float>(errors[i].add(row.time_s, difference));
+            if (tick.in_contact) press[its] = std::max(press[its], std::abs(point.sustained_over_jnd[its]));
+            point.press_over_jnd[its] = press[its];
+          }
+          use(point, index++);
+        },
+        test_.offset_m());
+  };
+  float largest = 0.0F;
+  std::size_t at = recording.rows.size();
+  each_tick([&](const HistoryPoint& point, std::size_t index) {
+    const float error = std::abs(point.sustained_over_jnd[slot]);
+    if (!point.in_contact || !(error > largest)) return;
+    largest = error;
+    at = index;
+  });
+  if (at == recording.rows.size()) return std::nullopt;
+  const double worst_s = recording.rows[at].time_s;
+  const auto is_near = [&](double time_s) { return time_s >= worst_s - kBefore_s && time_s <= worst_s + kAfter_s; };
+  auto history = std::make_shared<ForceHistory>(
+      static_cast<std::size_t>(std::ranges::count_if(recording.rows, is_near, &RecordingRow::time_s)));
+  each_tick([&](const HistoryPoint& point, std::size_t) {
+    if (is_near(point.time_s)) history->append(point);
+  });
+  const auto motion = motion_at(at, recording.rows.size(), [&](std::size_t i) {
+    return std::pair(recording.rows[i].time_s, recording.rows[i].position_m - test_.offset_m());
+  });
+  return Worst{true, motion_words(motion), zero_s + worst_s - begin_s, std::move(history)};
+}
+
 void LiveSession::update_verdict() {
   const std::vector<std::size_t> ready = models_.ready_slots();
   const double now_s = steady_now_s() - began_s_;
   const auto note = [&](double& time_s, bool reached) { time_s = reached && std::isnan(time_s) ? now_s : time_s; };
   note(start_.first_model_s, !ready.empty());
   note(start_.all_models_s, !ready.empty() && models_.all_settled());
-  if (verdict_.chosen && std::ranges::count(ready, *verdict_.chosen) == 0) verdict_ = {};
   const bool live = !test_.has_recording();
+  // A sentence about a model that is gone, or whose figures are not known yet, waits.
+  const bool known = !verdict_.chosen ||
+                     (std::ranges::count(ready, *verdict_.chosen) > 0 && !models_.info(*verdict_.chosen).refitting &&
+                      (live || figures(*verdict_.chosen).errors.samples > 0));
+  if (!known) {
+    verdict_ = {};
+    judged_ = 0;
+  }
   if (!test_.complete() || (live && comparison_.counted_s() < kLeastContact_s)) return;
   // The errors of the ticks change with each tick; the sentence does not flicker.
   if (live ? now_s < judged_s_ + kJudged_s : judged_ == test_.results()) return;
@@ -319,11 +409,12 @@ void LiveSession::update_verdict() {
   verdict_ = judge(judged, of_model ? models_.info(*models_.reference()).name : "");
   note(start_.verdict_s, true);
   models_.propose(*verdict_.chosen);
-  verdict_.detail = of_model           ? "There is no true force here: open a second recording to test on (M)."
-                    : live             ? "Of the presses so far, against " + reference_words(true) + "."
-                    : tests_training() ? "Of " + test_name() + ", to which the models were fitted."
-                                       : "99 % of the errors over " + test_name() +
-                                             ", which no model was fitted to. This test chose the model.";
+  verdict_.detail =
+      (of_model           ? "There is no true force here: open a second recording to test on (O)."
+       : live             ? "The test is the presses so far, against " + reference_words(true) + "."
+       : tests_training() ? "The test is " + test_name() + ", to which the models were fitted."
+                          : "The test is " + test_name() + ", which no model was fitted to; it chose the model.") +
+      verdict_.detail;
 }
 
 Verdict LiveSession::verdict() const {
@@ -349,7 +440,7 @@ std::string LiveSession::test_name() const {
   if (replay() != nullptr) return replay()->recording().name;
   const std::string file = test_file();
   if (!file.empty()) return (set_apart_ ? "the end of " : "") + std::filesystem::path(file).stem().string();
-  return *scene_.material + "_" + std::to_string(request_.seed + 1);
+  return "another press of the same block";
 }
 
 std::string LiveSession::reference_words(bool brief) const {

@@ -13,13 +13,13 @@
 #include <utility>
 #include <vector>
 
+#include "devices/bridge/bridge_bus.h"  // allow_remote_bridges
 #include "devices/registry/device_registry.h"
 #include "engine/base/result.h"
 #include "engine/live/haptics_loop.h"
 #include "engine/tick/jnd.h"
 #include "scenes/live/comparison.h"
 #include "scenes/live/fault_log.h"
-#include "scenes/live/model_test.h"
 #include "scenes/live/session_models.h"
 #include "scenes/live/session_recorder.h"
 #include "scenes/live/verdict.h"
@@ -37,16 +37,16 @@ struct SessionRequest {
   // set as well is set apart for the test, if models are fitted to the rest or were (this names it).
   std::string test{}, device = "auto";
   std::vector<std::string> models{};  // methods or model files; empty: those of `line_up`
-  std::string line_up{};  // a name of line_ups(); empty or unknown: the scene's default models
+  std::string line_up{};  // a name of line_ups() (model_worker.h); empty or unknown: the scene's default models
   // Additional models, of an earlier session (SessionModels::requests). `refits` false: the session has only these.
   std::vector<ModelRequest> kept{};
   bool refits = true;
-  std::uint64_t seed = 1;       // of the training recording and the fits; the hand and the test have seed + 1
-  bool realtime = true;         // asks for real-time scheduling
-  bool remote_bridges = false;  // bridge:tcp: may name another computer
-  std::string ready_models{};   // a folder (scenes/worker/model_worker.h); empty: every model is fitted
-  std::string data_folder{};    // for fault files; empty: the working directory
-  DeviceBus* bus = nullptr;     // outlives the session; null: the bus of this machine
+  std::uint64_t seed = 1;      // of the training recording and the fits; the hand and the test have seed + 1
+  bool realtime = true;        // asks for real-time scheduling
+  bool known_device = false;   // no notice about the device
+  std::string ready_models{};  // a folder (scenes/worker/model_worker.h); empty: every model is fitted
+  std::string data_folder{};   // for fault files; empty: the working directory
+  DeviceBus* bus = nullptr;    // outlives the session; null: the bus of this machine
 };
 
 // The devices that need no argument after their name, for code that may not include devices/. Blocks: opens and
@@ -82,6 +82,18 @@ class LiveSession {
   const std::string& line_up() const noexcept { return request_.line_up; }
   void use_line_up(const std::string& name);  // ignored when unknown or without a material to fit to
 
+  void add_model(const std::string& name);  // see SessionModels::add
+  // The moment of the model's largest error (mean over 50 ms) in the test, with the ticks of all models around it; with
+  // `of_test` false, or without a test, in the ticks of this session. `zero_s`: the loop time of the first tick of the
+  // test. Takes some tenths of a second. Empty: the model is not ready, or nothing was compared yet.
+  struct Worst {
+    bool of_test = false;
+    std::string words;                            // motion_words
+    double at_s = 0.0;                            // loop time
+    std::shared_ptr<const ForceHistory> history;  // of the test; null: that of the session
+  };
+  std::optional<Worst> worst(std::size_t slot, bool of_test, double zero_s) const;
+
   // The reference, and the errors against it.
   const Comparison& comparison() const noexcept { return comparison_; }
   bool has_reference() const {
@@ -93,7 +105,7 @@ class LiveSession {
   const ModelTest& test() const noexcept { return test_; }
   // The file of the test recording; empty: there is none, or it is that of the virtual material.
   std::string test_file() const;
-  std::string test_name() const;
+  std::string test_name() const;  // in words
   Verdict verdict() const;
   // Whether models were fitted to the test recording.
   bool tests_training() const;
@@ -143,6 +155,7 @@ class LiveSession {
   void read_snapshots();
   void save_fault_ticks();
   void update_verdict();
+  std::optional<Worst> worst_of_test(std::size_t slot, const Recording& recording, double zero_s) const;
 
   SessionRequest request_;
   Scene scene_;

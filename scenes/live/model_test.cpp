@@ -1,4 +1,4 @@
-#include "scenes/live/model_test.h"
+#include "scenes/live/session_models.h"
 
 #include <algorithm>
 #include <chrono>
@@ -7,7 +7,6 @@
 
 #include "models/model/fitted_model.h"
 #include "scenes/evaluation/evaluate.h"
-#include "scenes/live/session_models.h"
 #include "scenes/worker/model_worker.h"
 
 namespace palpate {

@@ -54,12 +54,11 @@ std::size_t SessionModels::add_slot(const ModelRequest& request) {
 }
 
 std::vector<std::size_t> SessionModels::update() {
-  for (const ModelWorker::Progress& progress : worker_.progress()) {
-    const auto index = slot_of_job(progress.job_id);
-    if (!index) continue;
+  const auto progress = worker_.progress();
+  if (const auto index = progress ? slot_of_job(progress->job_id) : std::nullopt) {
     ModelInfo& info = slots_[*index].info;
     if (info.state == SlotState::waiting) info.state = SlotState::fitting;
-    if (info.state == SlotState::fitting) info.progress = progress.share;
+    if (info.state == SlotState::fitting) info.progress = progress->share;
   }
   std::vector<std::size_t> ready = std::exchange(loaded_, {});
   for (const FinishedModel& finished : worker_.read_finished()) {
@@ -95,7 +94,7 @@ void SessionModels::unite_equal() {
     if (!slot.request.is_file() && asked != listed.model->name()) listed.info.equals.push_back(asked);
   }
   for (Slot& slot : slots_)
-    if (slot.takes_part() && !slot.renamed) slot.info.name = distinct_name(slot.model->name(), &slot);
+    if (slot.takes_part()) slot.info.name = distinct_name(slot.model->name(), &slot);
   const auto shown = ready_slots();
   if (!shown.empty() && !slots_[selected_].takes_part()) selected_ = shown.front();
 }
@@ -180,29 +179,42 @@ void SessionModels::use_requests(const std::vector<ModelRequest>& requests) {
     if (!slot.request.is_file()) slot.info.state = SlotState::hidden;
   std::optional<std::size_t> first;
   for (const ModelRequest& request : requests) {
-    const auto same = std::ranges::find_if(slots_, [&](const Slot& slot) { return slot.is(request); });
-    auto index = static_cast<std::size_t>(same - slots_.begin());
-    if (same == slots_.end()) {
-      if (!has_room("show " + request_name(request))) continue;
-      index = add_slot(request);
-      worker_.add_job(slots_[index].job, request);
-    }
-    slots_[index].show();
+    const auto index = show(request);
     if (!first) first = index;
   }
   if (slots_[selected_].hidden() && first) selected_ = *first;
   unite_equal();
 }
 
+// Shows the model of this request, which is fitted if there is none yet. Empty, with a notice: there is no room.
+std::optional<std::size_t> SessionModels::show(const ModelRequest& request) {
+  const auto same = std::ranges::find_if(slots_, [&](const Slot& slot) { return slot.is(request); });
+  auto index = static_cast<std::size_t>(same - slots_.begin());
+  if (same == slots_.end()) {
+    if (!has_room("show " + request_name(request))) return std::nullopt;
+    index = add_slot(request);
+    worker_.add_job(slots_[index].job, request);
+  }
+  slots_[index].show();
+  return index;
+}
+
+void SessionModels::add(const std::string& name) {
+  const auto requests = requested_models(scene_, {name});
+  if (!requests) return notices_.push_back({requests.error().message, true});
+  if (show(requests->front())) unite_equal();
+}
+
 bool SessionModels::remove(std::size_t index) {
   if (index >= slots_.size() || slots_[index].removed) return false;
   Slot& slot = slots_[index];
-  if (ready_slots().size() == (slot.takes_part() ? 1 : 0)) {
+  if (slot.takes_part() && ready_slots().size() == 1) {
     notices_.push_back({"the last model cannot be removed", false});
     return false;
   }
   slot.removed = true;
   slot.info.state = SlotState::hidden;
+  worker_.cancel_job(slot.job);
   free(index);
   unite_equal();
   return true;
@@ -212,12 +224,6 @@ bool SessionModels::remove(std::size_t index) {
 void SessionModels::free(std::size_t index) {
   freed_.push_back(index);
   for (PublishedSet& set : sets_) set.models.erase(index);
-}
-
-void SessionModels::rename(std::size_t slot, const std::string& name) {
-  if (slot >= slots_.size() || name.empty()) return;
-  slots_[slot].info.name = distinct_name(name, &slots_[slot]);
-  slots_[slot].renamed = true;
 }
 
 void SessionModels::refit(std::size_t index, int centres) {
@@ -252,9 +258,9 @@ double SessionModels::longest_memory_s() const noexcept {
 
 bool SessionModels::has_room(const std::string& what) {
   if (room()) return true;
-  notices_.push_back({"cannot " + what + ": there are " + std::to_string(kMaxModels) +
-                          " models already; remove one (right button on its row)",
-                      true});
+  notices_.push_back(
+      {"cannot " + what + ": there are " + std::to_string(kMaxModels) + " models already; take one out (x on its row)",
+       true});
   return false;
 }
 

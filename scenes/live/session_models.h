@@ -4,8 +4,11 @@
 // Thread guarantee: one thread; only the destructor waits for the worker.
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
+#include <future>
 #include <map>
 #include <memory>
 #include <optional>
@@ -13,7 +16,12 @@
 #include <utility>
 #include <vector>
 
+#include "engine/live/device.h"
 #include "engine/live/live_tick.h"
+#include "engine/recording/recording.h"
+#include "engine/tick/jnd.h"
+#include "scenes/evaluation/evaluate.h"
+#include "scenes/evaluation/model_errors.h"
 #include "scenes/live/fault_log.h"
 #include "scenes/scene/scene.h"
 #include "scenes/worker/model_worker.h"
@@ -112,12 +120,12 @@ class SessionModels {
   // Shows the models of these requests, fits those that are missing and hides all others except models from files.
   // The active model stays active if it is shown; else the first model becomes active.
   void use_requests(const std::vector<ModelRequest>& requests);
-  // Removes a model permanently. Returns false, with a notice, for the last model.
+  // Shows one more model by its name, fitted if there is none yet; a notice says why not.
+  void add(const std::string& name);
+  // Removes a model permanently and cancels its fit. Returns false, with a notice, for the last model that is ready.
   bool remove(std::size_t slot);
   // The slots whose models were removed or replaced since the last call. Discard all results of theirs.
   std::vector<std::size_t> read_freed() { return std::exchange(freed_, {}); }
-  // Appends a number where another listed slot has the name.
-  void rename(std::size_t slot, const std::string& name);
   // Fits the model, again if it is ready, with this number of centres, before those that wait. Ignored unless
   // `takes_centres`.
   void refit(std::size_t slot, int centres);
@@ -142,7 +150,7 @@ class SessionModels {
     int asked_centres = 0;                     // of the plan, before the user changed the number
     std::shared_ptr<const FittedModel> model;  // null until ready
     ProbedForces probed;                       // of the model
-    bool removed = false, renamed = false;
+    bool removed = false;
 
     bool hidden() const { return info.state == SlotState::hidden; }
     bool takes_part() const { return model != nullptr && info.state == SlotState::ready; }
@@ -157,6 +165,7 @@ class SessionModels {
   };
 
   std::size_t add_slot(const ModelRequest& request);
+  std::optional<std::size_t> show(const ModelRequest& request);
   bool is_of_other_material(const Slot& slot) const;
   bool join(std::size_t index, const FinishedModel& finished);
   void unite_equal();
@@ -176,6 +185,85 @@ class SessionModels {
   std::size_t next_job_ = 0;
   std::vector<std::size_t> loaded_;  // slots of files since the last update
   std::vector<std::size_t> freed_;   // see read_freed
+};
+
+// Tests the ready models of a session behind the scenes: their errors over a whole recording that no model was fitted
+// to, as `palpate replay` and the report compute them (scenes/evaluation/evaluate.h), and the time of their ticks. The
+// result does not depend on what the user presses. The recording is the one that is replayed, a part of the training
+// recording that was set apart, or that of the scene's material with another seed.
+// Of a replayed recording, it also estimates one surface offset for all models together, which the user can apply.
+// A separate thread tests each model when it becomes ready, and times all models together when all fits have ended, so
+// that a slow phase of the machine affects all of them.
+// Thread guarantee: one thread; only the destructor waits, some tenths of a second.
+class ModelTest {
+ public:
+  using Models = std::vector<std::shared_ptr<const ForceModel>>;
+  // Makes the recording, in the thread of the test. `progress`: see record_sensors.
+  using MakeRecording = std::function<Result<Recording>(const std::function<bool(double)>& progress)>;
+
+  // `replay` outlives this; null: nothing is replayed. Without a replay and without `make` models are only timed.
+  ModelTest(ReplayControl* replay, MakeRecording make, const JndLine& jnd)
+      : replay_(replay), make_(std::move(make)), jnd_(jnd) {}
+  ~ModelTest() { cancelled_.store(true, std::memory_order_relaxed); }
+
+  // Whether there is a recording to test on.
+  bool has_recording() const noexcept { return replay_ != nullptr || make_ != nullptr; }
+  // Call it once a frame. Returns whether there are new results.
+  bool update(const SessionModels& models);
+  // Whether the newest results are those of all ready models, timed together.
+  bool complete() const noexcept { return complete_; }
+  // The recording of the tests; null: there is none, or a test is running.
+  const Recording* recording() const noexcept {
+    if (running_.valid()) return nullptr;
+    return replay_ != nullptr ? &replay_->recording() : made_ ? &*made_ : nullptr;
+  }
+  // Number of tests with results.
+  std::uint64_t results() const noexcept { return results_; }
+
+  struct Errors : ErrorSummary {
+    Interval p99_interval{kUnknown, kUnknown};
+    Draws strokes;  // for the choice of the best model
+  };
+  struct Tested {
+    std::shared_ptr<const ForceModel> model;
+    Errors as_recorded, surface_moved;  // without samples if there is no recording
+    Timing tick;                        // a whole tick with this model alone
+  };
+  const Tested* find(const ForceModel* model) const noexcept;
+  // Its errors with the surface as it is now (`moved`). `tested`: of this object.
+  const Errors& errors(const Tested& tested) const noexcept {
+    return moved_ ? tested.surface_moved : tested.as_recorded;
+  }
+
+  // Whether to subtract the estimated offset from the positions of the replay. Returns whether that changes them.
+  bool move(bool moved);
+  bool moved() const noexcept { return moved_; }
+  double found_m() const noexcept { return surface_.at; }  // estimated offset; 0: none yet, or not significant
+  double offset_m() const noexcept { return moved_ ? found_m() : 0.0; }  // that is subtracted
+
+ private:
+  struct Outcome {
+    std::vector<Tested> tested;  // of the new models
+    Models timed;
+    std::vector<Timing> ticks;  // of `timed`
+    OffsetEstimate surface;
+  };
+  Outcome run(const Models& untested, const Models& timed);
+  void take(Outcome outcome);
+
+  ReplayControl* replay_;
+  MakeRecording make_;
+  JndLine jnd_;
+  bool moved_ = false, complete_ = false;
+  std::uint64_t results_ = 0;
+  Models ready_;  // of the last test
+  std::vector<Tested> tested_;
+  OffsetEstimate surface_;
+  // The thread of the test only.
+  std::optional<Recording> made_;
+  std::vector<TimedSamples> samples_;  // to time models on; none without a recording
+  std::atomic<bool> cancelled_{false};
+  std::future<Outcome> running_;
 };
 
 }  // namespace palpate

@@ -1,4 +1,4 @@
-#include "scenes/live/session_recordings.h"
+#include "scenes/live/session_recorder.h"
 
 #include <algorithm>
 #include <cmath>

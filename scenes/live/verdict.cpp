@@ -14,12 +14,8 @@ constexpr double kTick_ns = 1e6;
 // Medians of six rounds of the same model differ by a few percent.
 constexpr double kEqualTime = 0.1;
 
-bool is_noticeable(const JudgedModel& one) { return one.p99_error_over_jnd > 1.0; }
-
-std::string quality(const JudgedModel& one, const std::string& reference) {
-  if (!reference.empty()) return " differs from " + reference + " by " + jnd_text(one.p99_error_over_jnd) + " JND";
-  if (!is_noticeable(one)) return " feels like the block";
-  return " differs by " + jnd_text(one.p99_error_over_jnd) + " of what a hand can notice";
+std::string difference(const JudgedModel& one, const std::string& reference) {
+  return one.name + " differs from " + reference + " by " + jnd_text(one.p99_error_over_jnd) + " JND";
 }
 
 }  // namespace
@@ -37,31 +33,31 @@ std::string time_words(const Timing& one, const Timing& other) {
   const double ratio = one.median_ns / other.median_ns;
   // Other programs only add time, so that on a busy machine the least of the rounds are nearer to the truth.
   const double least = one.low_ns / other.low_ns;
-  if (std::min(std::abs(ratio - 1.0), std::abs(least - 1.0)) <= kEqualTime)
-    return "as fast (" + fixed(one.median_ns, 0) + " ns)";
-  return "in " + general(ratio, 2) + (ratio < 1.0 ? " of the time (" : " times the time (") + fixed(one.median_ns, 0) +
-         " against " + fixed(other.median_ns, 0) + " ns)";
+  if (std::min(std::abs(ratio - 1.0), std::abs(least - 1.0)) <= kEqualTime) return "as fast";
+  return ratio < 1.0 ? general(1.0 / ratio, 2) + " times faster" : general(ratio, 2) + " times slower";
 }
 
 Verdict judge(const std::vector<JudgedModel>& judged, const std::string& reference) {
   std::vector<Candidate> candidates;
   for (const JudgedModel& one : judged)
     candidates.push_back({one.within_jnd, one.p99_error_over_jnd, one.tick.median_ns, one.strokes});
-  const JudgedModel& chosen = judged[rank(candidates).recommended];
+  const Ranking ranking = rank(candidates);
+  const JudgedModel& chosen = judged[ranking.recommended];
   Verdict verdict;
   verdict.chosen = chosen.slot;
-  verdict.noticeable = is_noticeable(chosen);
-  verdict.headline = chosen.name + quality(chosen, reference) + ".";
+  verdict.headline = reference.empty() ? recommendation(chosen.name, candidates[ranking.recommended])
+                                       : difference(chosen, reference) + ".";
+  const auto lowest = std::ranges::min_element(judged, {}, &JudgedModel::p99_error_over_jnd) - judged.begin();
+  if (const auto at = static_cast<std::size_t>(lowest); at != ranking.recommended && reference.empty())
+    verdict.detail = " " + judged[at].name + " has a lower 99 % error, " +
+                     (ranking.as_good[at] ? "by too little to count, and is slower." : "but a smaller share.");
   const JudgedModel& rival = *std::ranges::min_element(judged, {}, [&](const JudgedModel& one) {
     return std::tuple(&one == &chosen, one.paper == chosen.paper, one.p99_error_over_jnd);
   });
-  if (&rival == &chosen) {
-    verdict.headline += " It uses " + tick_share(chosen.tick.median_ns) + " of the 1 ms of a tick.";
-    return verdict;
-  }
-  const bool both = reference.empty() && !is_noticeable(chosen) && !is_noticeable(rival);
-  verdict.headline += (both ? " So does " + rival.name : " " + rival.name + quality(rival, reference)) + ", " +
-                      time_words(rival.tick, chosen.tick) + ".";
+  if (&rival == &chosen) return verdict;
+  verdict.headline +=
+      " " + (reference.empty() ? rival.name + ": " + share_text(rival.within_jnd) : difference(rival, reference)) +
+      ", " + time_words(rival.tick, chosen.tick) + ".";
   return verdict;
 }
 

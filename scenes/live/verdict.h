@@ -24,16 +24,14 @@ struct JudgedModel {
 
 struct Verdict {
   std::optional<std::size_t> chosen;  // slot of the recommended model; empty: `headline` says why there is none yet
-  bool noticeable = false;            // the 99 % error of the chosen model exceeds one JND
   std::string headline;               // what is compared, in one or two sentences
-  std::string detail;                 // a second line; may be empty
+  std::string detail;                 // a second line: why not the model of the lowest error; may be empty
 };
 
 // `judged`: at least one. `reference`: name of the model that is the reference; empty: the true force is known.
 Verdict judge(const std::vector<JudgedModel>& judged, const std::string& reference);
 
-// "in 0.6 of the time (240 against 390 ns)"; where the medians or the least times differ by at most a tenth,
-// "as fast".
+// "1.6 times faster"; where the medians or the least times differ by at most a tenth, "as fast".
 std::string time_words(const Timing& one, const Timing& other);
 // The share of the period of 1 ms that a tick takes, as "0.04 %".
 std::string tick_share(double tick_ns);

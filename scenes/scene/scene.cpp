@@ -128,6 +128,9 @@ class SceneReader : private JsonFields {
     read_colours();
     if (optional_member(top_, "strongest_press_N").value != nullptr)
       scene_.strongest_press_N = number(top_, "strongest_press_N", {0.0, kStrongestPress_N, true});
+    if (optional_member(top_, "shows").value != nullptr) scene_.shows = filled_text(top_, "shows");
+    if (optional_member(top_, "order").value != nullptr)
+      scene_.order = static_cast<int>(number(top_, "order", {1.0, 100.0}));
     refuse_unknown(top_);
     if (std::optional<Error> wrong = error()) return *wrong;
     return scene_;

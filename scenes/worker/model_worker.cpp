@@ -57,6 +57,15 @@ std::string request_name(const ModelRequest& request) {
   return request.is_file() ? std::filesystem::path(request.path).stem().string() : plan_name(request.plan);
 }
 
+const std::vector<MethodChoice>& method_choices() {
+  static const std::vector<MethodChoice> all = [] {
+    std::vector<MethodChoice> choices;
+    for (const ModelPlan& plan : all_plans()) choices.push_back({family_name(plan), plan.selects_centres()});
+    return choices;
+  }();
+  return all;
+}
+
 const std::vector<LineUp>& line_ups() {
   static const std::vector<LineUp> all = {
       {"Comparison", "the methods of Hoever & Harders (2009) with 100 centres, and this program's best",
@@ -137,7 +146,7 @@ ModelWorker::ModelWorker(Scene scene, std::uint64_t seed, std::vector<Recording>
 
 Status ModelWorker::start() {
   try {
-    for (Lane& lane : lanes_) lane.thread = std::jthread([this, &lane] { work(lane); });
+    thread_ = std::jthread([this] { work(); });
   } catch (const std::system_error& error) {
     return Error{std::string("cannot start a thread that fits models: ") + error.what() + "; close other programs"};
   }
@@ -152,10 +161,16 @@ double ModelWorker::expected_cost_s(const ModelRequest& request) const {
 
 void ModelWorker::add_job(std::size_t job_id, const ModelRequest& request, bool at_once) {
   const std::lock_guard lock(mutex_);
-  Lane& lane = lane_of(request);
-  std::erase_if(lane.jobs, [&](const auto& other) { return other.second.job_id == job_id; });
-  lane.jobs.emplace(at_once ? -1.0 : expected_cost_s(request), Job{job_id, request});
+  std::erase_if(jobs_, [&](const auto& other) { return other.second.job_id == job_id; });
+  jobs_.emplace(at_once ? -1.0 : expected_cost_s(request), Job{job_id, request});
+  end_s_ = 0.0;
   wake_.notify_all();
+}
+
+void ModelWorker::cancel_job(std::size_t job_id) {
+  const std::lock_guard lock(mutex_);
+  std::erase_if(jobs_, [&](const auto& other) { return other.second.job_id == job_id; });
+  if (working_on_ == job_id) interrupted_.store(true, std::memory_order_relaxed);
 }
 
 // The name of a plan says nothing of options beside its base, method and size.
@@ -171,49 +186,48 @@ std::vector<FinishedModel> ModelWorker::read_finished() {
   return std::exchange(finished_, {});
 }
 
-std::vector<ModelWorker::Progress> ModelWorker::progress() const {
+std::optional<ModelWorker::Progress> ModelWorker::progress() const {
   const std::lock_guard lock(mutex_);
-  std::vector<Progress> running;
-  for (const Lane& lane : lanes_)
-    if (lane.working_on) running.push_back({*lane.working_on, lane.share.load(std::memory_order_relaxed)});
-  return running;
+  if (!working_on_) return std::nullopt;
+  return Progress{*working_on_, share_.load(std::memory_order_relaxed)};
 }
 
 double ModelWorker::left_s() const {
   const std::lock_guard lock(mutex_);
-  double left_s = 0.0;
-  for (const Lane& lane : lanes_) {
-    double expected_s = 0.0, running_s = 0.0;
-    for (const auto& [key, job] : lane.jobs) expected_s += expected_cost_s(job.request);
-    if (lane.working_on) {
-      const double share = lane.share.load(std::memory_order_relaxed);
-      if (share > 0.1) running_s = (steady_now_s() - lane.began_s) * (1.0 - share) / share;
-      running_s = std::max(running_s, (1.0 - share) * lane.expected_s);
-    }
-    // The pace of the jobs before, beside other programs.
-    const double pace = lane.done_expected_s > 0.0 ? std::max(1.0, lane.done_s / lane.done_expected_s) : 1.0;
-    left_s = std::max(left_s, running_s + pace * expected_s);
+  double waiting_s = 0.0, running_s = 0.0;
+  for (const auto& [key, job] : jobs_) waiting_s += expected_cost_s(job.request);
+  const double now_s = steady_now_s();
+  if (working_on_) {
+    const double share = share_.load(std::memory_order_relaxed);
+    if (share > 0.1) running_s = (now_s - began_s_) * (1.0 - share) / share;
+    running_s = std::max(running_s, (1.0 - share) * expected_s_);
   }
-  return left_s;
+  // The pace of the jobs before, beside other programs; a careful guess before there is one, so that the estimate does
+  // not have to grow.
+  const double pace = done_expected_s_ > 0.0 ? std::max(1.0, done_s_ / done_expected_s_) : 1.5;
+  const double end_s = now_s + running_s + pace * waiting_s;
+  end_s_ = end_s_ > 0.0 ? std::min(end_s_, end_s) : end_s;
+  return std::max(0.0, end_s_ - now_s);
 }
 
-void ModelWorker::work(Lane& lane) {
+void ModelWorker::work() {
   lower_thread_priority();
   for (std::unique_lock lock(mutex_);;) {
-    lane.working_on.reset();
-    wake_.wait(lock, stop_.get_token(), [&] { return !lane.jobs.empty(); });
+    working_on_.reset();
+    wake_.wait(lock, stop_.get_token(), [&] { return !jobs_.empty(); });
     if (stop_.stop_requested()) return;
-    const Job job = std::move(lane.jobs.extract(lane.jobs.begin()).mapped());
-    lane.working_on = job.job_id;
-    lane.began_s = steady_now_s();
-    lane.expected_s = expected_cost_s(job.request) + (lane.fits ? 0.0 : kPreparation_s);
-    lane.share.store(0.0, std::memory_order_relaxed);
+    const Job job = std::move(jobs_.extract(jobs_.begin()).mapped());
+    working_on_ = job.job_id;
+    began_s_ = steady_now_s();
+    expected_s_ = expected_cost_s(job.request) + (fits_ ? 0.0 : kPreparation_s);
+    share_.store(0.0, std::memory_order_relaxed);
+    interrupted_.store(false, std::memory_order_relaxed);
     lock.unlock();
     FinishedModel made{job.job_id, job.request.plan.centres, make(job.request)};
     lock.lock();
-    lane.done_s += steady_now_s() - lane.began_s;
-    lane.done_expected_s += lane.expected_s;
-    finished_.push_back(std::move(made));
+    done_s_ += steady_now_s() - began_s_;
+    done_expected_s_ += expected_s_;
+    if (!interrupted_.load(std::memory_order_relaxed)) finished_.push_back(std::move(made));
   }
 }
 
@@ -222,41 +236,41 @@ Result<std::shared_ptr<const FittedModel>> ModelWorker::make(const ModelRequest&
   if (const std::string ready = ready_file(request.plan); !ready.empty()) {
     if (auto model = load_model(ready)) return model;
   }
-  Result<ModelData> data = fit(lane_of(request), request.plan);
+  Result<ModelData> data = fit(request.plan);
   if (!data) return data.error();
   return std::make_shared<const FittedModel>(std::move(*data));
 }
 
-FitControl ModelWorker::control(Lane& lane, double from, double to) {
-  return {[this, &lane, from, to](double fraction) {
-    lane.share.store(from + (to - from) * fraction, std::memory_order_relaxed);
-    return !stop_.stop_requested();
+FitControl ModelWorker::control(double from, double to) {
+  return {[this, from, to](double fraction) {
+    share_.store(from + (to - from) * fraction, std::memory_order_relaxed);
+    return !stop_.stop_requested() && !interrupted_.load(std::memory_order_relaxed);
   }};
 }
 
-Status ModelWorker::prepare_recordings(Lane& lane) {
-  if (lane.fits) return {};
+Status ModelWorker::prepare_recordings() {
+  if (fits_) return {};
   if (!scene_.has_material())
     return Error{"the scene \"" + scene_.name + "\" has no virtual material to fit a model to"};
-  const std::lock_guard lock(recordings_mutex_);
-  for (Recording& recording : training_) recordings_.push_back(prepare_recording(std::move(recording)));
-  training_.clear();
-  if (recordings_.empty()) {
-    Result<Recording> recording = record_sensors({*scene_.material, seed_}, control(lane, 0.0, kRecorded).progress);
+  if (training_.empty()) {
+    Result<Recording> recording = record_sensors({*scene_.material, seed_}, control(0.0, kRecorded).progress);
     if (!recording) return recording.error();
-    recordings_.push_back(prepare_recording(std::move(*recording)));
+    training_.push_back(std::move(*recording));
   }
-  lane.fits.emplace(recordings_, training_scene(scene_));
+  std::vector<PreparedRecordingPointer> recordings;
+  for (Recording& recording : training_) recordings.push_back(prepare_recording(std::move(recording)));
+  training_.clear();
+  fits_.emplace(std::move(recordings), training_scene(scene_));
   return {};
 }
 
-Result<ModelData> ModelWorker::fit(Lane& lane, const ModelPlan& asked) {
-  if (const Status status = prepare_recordings(lane); !status) return status.error();
+Result<ModelData> ModelWorker::fit(const ModelPlan& asked) {
+  if (const Status status = prepare_recordings(); !status) return status.error();
   ModelPlan plan = asked;
   plan.seed = seed_;
   // The progress of the virtual recording, or 0 if it was done before.
-  const double done = lane.share.load(std::memory_order_relaxed);
-  auto fitted = lane.fits->fit(plan, control(lane, done, 1.0));
+  const double done = share_.load(std::memory_order_relaxed);
+  auto fitted = fits_->fit(plan, control(done, 1.0));
   if (!fitted) return fitted.error();
   return std::move(fitted->data);
 }

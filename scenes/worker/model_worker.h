@@ -1,12 +1,11 @@
-// Background threads that fit the models of a session. Plans on the force and plans with the trend have nothing in
-// common but the recordings, so each kind has a thread; in it, those of the least expected time come first. The
-// training set is given, or the recording that `palpate synth` makes of the scene's virtual material with the same
-// seed. The models are bit-identical to those of `palpate fit`. The threads have a lower priority than graphics and
-// haptics. A fit is interrupted within some 20 ms, except during the factorisation of the direct fit, which is one call
-// to LAPACK. Thread guarantee: one thread, slow side; only the destructor waits for the threads.
+// The models that a session is asked for (plans that are fitted to the scene's material, and model files), and the
+// thread that fits them in the background, those of the least expected time first. The training set is given, or the
+// recording that `palpate synth` makes of the scene's virtual material with the same seed. The models are bit-identical
+// to those of `palpate fit`. The thread has a lower priority than graphics and haptics. A fit is interrupted within
+// some 20 ms, except during the factorisation of the direct fit, which is one call to LAPACK. Thread guarantee: one
+// thread, slow side; only the destructor waits for the thread.
 #pragma once
 
-#include <array>
 #include <atomic>
 #include <condition_variable>
 #include <cstdint>
@@ -27,10 +26,6 @@
 #include "scenes/scene/scene.h"
 
 namespace palpate {
-
-// The models that a session is asked for: plans that are fitted to the scene's material, and model files. A session
-// keeps each of its models in a numbered slot (scenes/live/session_models.h). Thread guarantee: slow side (reads
-// files).
 
 // The largest number of centres of the slider.
 inline constexpr int kMostCentres = 200;
@@ -56,6 +51,13 @@ const LineUp* find_line_up(const std::string& name);
 // Models with differences from obvious to unnoticeable, for the game of the exhibit.
 const std::vector<std::string>& exhibit_models();
 
+// A method that a user may add to the comparison.
+struct MethodChoice {
+  std::string family;  // "trend+greedy"
+  bool takes_centres = false;
+};
+const std::vector<MethodChoice>& method_choices();
+
 // The name of a model until it is ready.
 std::string request_name(const ModelRequest& request);
 
@@ -78,7 +80,7 @@ class ModelWorker {
   // `training`: recordings; empty: that of the scene's virtual material. `ready`: the folder of make_ready_models,
   // whose models of that material need no fit; may be empty.
   ModelWorker(Scene scene, std::uint64_t seed, std::vector<Recording> training = {}, const std::string& ready = "");
-  // Interrupts the running fits and waits for the threads.
+  // Interrupts the running fit and waits for the thread.
   ~ModelWorker() { cancel(); }
 
   // Makes the model of one request in the calling thread; call it before `start`. Errors: those of the fit; the scene
@@ -90,21 +92,25 @@ class ModelWorker {
 
   // Errors: a thread cannot be started.
   Status start();
-  // Adds a job to the queues, which are in the order of expected times. A job of the same id that has not begun is
+  // Adds a job to the queue, which is in the order of expected times. A job of the same id that has not begun is
   // replaced. `at_once`: before all others.
   void add_job(std::size_t job_id, const ModelRequest& request, bool at_once = false);
   // Returns and clears the models that were finished since the last call.
   std::vector<FinishedModel> read_finished();
 
+  // Takes a job out of the queue, or interrupts it.
+  void cancel_job(std::size_t job_id);
+
   struct Progress {
     std::size_t job_id = 0;
     double share = 0.0;  // of this job, 0..1
   };
-  std::vector<Progress> progress() const;
-  // Estimated time until all jobs are done.
+  // Of the running job; empty: none runs.
+  std::optional<Progress> progress() const;
+  // Estimated time until all jobs are done. It grows only with a new job.
   double left_s() const;
 
-  // Interrupts the running fits and starts no other. Does not wait.
+  // Interrupts the running fit and starts no other. Does not wait.
   void cancel() noexcept { stop_.request_stop(); }
 
  private:
@@ -112,37 +118,32 @@ class ModelWorker {
     std::size_t job_id = 0;
     ModelRequest request;
   };
-  // The fits of one Base.
-  struct Lane {
-    std::optional<ModelFits> fits;  // used by its thread only; none before the first fit
-    std::atomic<double> share{0.0};
-    // Guarded by mutex_.
-    std::multimap<double, Job> jobs;  // by expected time, s; below 0: at once
-    std::optional<std::size_t> working_on;
-    double began_s = 0.0;                        // of the running job; steady clock
-    double expected_s = 0.0;                     // its expected duration
-    double done_s = 0.0, done_expected_s = 0.0;  // of all jobs before
-    std::jthread thread;                         // last: it ends before what it uses
-  };
-  Lane& lane_of(const ModelRequest& request) { return lanes_[request.plan.base == Base::force ? 0 : 1]; }
-  void work(Lane& lane);  // until cancelled
+  void work();  // until cancelled
   double expected_cost_s(const ModelRequest& request) const;
-  Result<ModelData> fit(Lane& lane, const ModelPlan& plan);
-  Status prepare_recordings(Lane& lane);
-  FitControl control(Lane& lane, double from, double to);
+  Result<ModelData> fit(const ModelPlan& plan);
+  Status prepare_recordings();
+  FitControl control(double from, double to);
 
   Scene scene_;
   std::uint64_t seed_;
   std::string ready_;  // folder of the ready models of this scene and seed; empty: there are none
   std::stop_source stop_;
-  std::mutex recordings_mutex_;
-  // Guarded by recordings_mutex_.
+  // Used by the thread only.
   std::vector<Recording> training_;  // until the first fit
-  std::vector<PreparedRecordingPointer> recordings_;
+  std::optional<ModelFits> fits_;    // none before the first fit
+  std::atomic<double> share_{0.0};
+  std::atomic<bool> interrupted_{false};  // the running job was cancelled
   mutable std::mutex mutex_;
   std::condition_variable_any wake_;
-  std::vector<FinishedModel> finished_;  // guarded by mutex_
-  std::array<Lane, 2> lanes_;            // last, for the same reason
+  // Guarded by mutex_.
+  std::vector<FinishedModel> finished_;
+  std::multimap<double, Job> jobs_;  // by expected time, s; below 0: at once
+  std::optional<std::size_t> working_on_;
+  double began_s_ = 0.0;                         // of the running job; steady clock
+  double expected_s_ = 0.0;                      // its expected duration
+  double done_s_ = 0.0, done_expected_s_ = 0.0;  // of all jobs before
+  mutable double end_s_ = 0.0;                   // the earliest end of all jobs that was estimated; 0: none
+  std::jthread thread_;                          // last: it ends before what it uses
 };
 
 // Fits the models with which a window of this scene may start, with seed 1, when the program is built

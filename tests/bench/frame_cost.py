@@ -61,9 +61,6 @@ class IdealLoop(threading.Thread):
 
 def run(program, blocks, seconds, options, display):
     with tempfile.TemporaryDirectory() as folder:
-        config = pathlib.Path(folder, "config/palpate")
-        config.mkdir(parents=True)
-        (config / "window.json").write_text(json.dumps({"blocks": blocks}))
         stats = pathlib.Path(folder, "stats.json")
         environment = dict(os.environ, DISPLAY=display, XDG_CONFIG_HOME=f"{folder}/config",
                            XDG_DATA_HOME=f"{folder}/data")

@@ -115,7 +115,7 @@ class DemoWindowTest : public ::testing::Test {
     frames(then);
   }
   void left_button(int action, int then = 2) {
-    send(glfwSetMouseButtonCallback, GLFW_MOUSE_BUTTON_LEFT, action, 0);
+    send_left_button(app_->window().handle(), action == GLFW_PRESS);
     frames(then);
   }
   void click() {

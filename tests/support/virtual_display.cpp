@@ -11,6 +11,10 @@
 #include <cstdlib>
 #include <utility>
 
+// After all others, because X11 defines macros with common names.
+#define GLFW_EXPOSE_NATIVE_X11
+#include <GLFW/glfw3native.h>
+
 namespace palpate::test {
 namespace {
 
@@ -66,6 +70,21 @@ GLFWwindow* open_gl_window(int width, int height) {
   EXPECT_NE(window, nullptr);
   if (window != nullptr) glfwMakeContextCurrent(window);
   return window;
+}
+
+void send_left_button(GLFWwindow* window, bool down) {
+  double x = 0.0, y = 0.0;
+  glfwGetCursorPos(window, &x, &y);
+  XEvent event{};
+  event.xbutton.type = down ? ButtonPress : ButtonRelease;
+  event.xbutton.display = glfwGetX11Display();
+  event.xbutton.window = glfwGetX11Window(window);
+  event.xbutton.button = Button1;
+  event.xbutton.x = static_cast<int>(x);
+  event.xbutton.y = static_cast<int>(y);
+  event.xbutton.same_screen = True;
+  XSendEvent(event.xbutton.display, event.xbutton.window, False, NoEventMask, &event);
+  XSync(event.xbutton.display, False);
 }
 
 OwnDisplay::OwnDisplay() { name_ = start_server(process_); }

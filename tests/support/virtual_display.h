@@ -16,6 +16,9 @@ const std::string& virtual_display();
 // none. End it with glfwDestroyWindow and glfwTerminate.
 GLFWwindow* open_gl_window(int width, int height);
 
+// Presses or releases the left button over the window; GLFW reports it as held in between.
+void send_left_button(GLFWwindow* window, bool down);
+
 // A display of its own, for a program that loses it.
 class OwnDisplay {
  public:

@@ -5,7 +5,7 @@
 #include <set>
 
 #include "engine/live/pacer.h"
-#include "rendering/panels/scene_overlay.h"
+#include "rendering/panels/panel.h"
 #include "tests/support/demo_window.h"
 
 namespace palpate {
@@ -17,6 +17,18 @@ class DemoCommandsTest : public test::DemoWindowTest {
   void open_list(int key) {
     press(key);
     frames(4);
+  }
+  void export_item(int what) {
+    open_list(GLFW_KEY_E);
+    for (int i = 0; i < what; ++i) press(GLFW_KEY_DOWN);
+    press(GLFW_KEY_ENTER);
+  }
+  std::size_t exported(const std::string& start, const char* extension) const {
+    std::size_t files = 0;
+    std::error_code none;
+    for (const auto& entry : std::filesystem::directory_iterator(folder_.file("palpate"), none))
+      files += entry.path().filename().string().rfind(start, 0) == 0 && entry.path().extension() == extension ? 1 : 0;
+    return files;
   }
 };
 
@@ -92,14 +104,14 @@ TEST_F(DemoCommandsTest, TheFilePickerListsFoldersAndWhatCanBeOpened) {
 TEST_F(DemoCommandsTest, OpenTakesTheFocusAndATypedPathReplacesTheOldOne) {
   open("hand");
   save("third.json", 3, 1.2);
-  open_list(GLFW_KEY_M);
+  open_list(GLFW_KEY_O);
   ASSERT_TRUE(ImGui::GetIO().WantTextInput) << "the path can be typed at once";
   type(folder_.file("nowhere.json"));
   press(GLFW_KEY_ENTER);
   EXPECT_TRUE(told("there is no file " + folder_.file("nowhere.json")));
   EXPECT_TRUE(app_->view().settings.recent.empty());
   EXPECT_FALSE(app_->view().dialogs.file_list);
-  open_list(GLFW_KEY_M);
+  open_list(GLFW_KEY_O);
   type(folder_.file("third.json"));
   EXPECT_EQ(app_->view().dialogs.picker.path.data(), folder_.file("third.json"));
   press(GLFW_KEY_ENTER);
@@ -113,7 +125,7 @@ TEST_F(DemoCommandsTest, AFileIsChosenWithKeysAlone) {
   std::filesystem::create_directory(folder_.file("lab"));
   save("lab/third.json", 3, 1.2);
   std::filesystem::current_path(folder_.path());
-  open_list(GLFW_KEY_M);
+  open_list(GLFW_KEY_O);
   press(GLFW_KEY_DOWN);  // ../
   press(GLFW_KEY_DOWN);  // lab/
   press(GLFW_KEY_ENTER);
@@ -128,9 +140,41 @@ TEST_F(DemoCommandsTest, AFileIsChosenWithKeysAlone) {
   EXPECT_FALSE(app_->view().dialogs.file_list);
 }
 
+// The letter of a button is its key.
+TEST_F(DemoCommandsTest, EveryButtonHasItsFirstLetterAsKey) {
+  open("hand");
+  for (const WindowCommand& command : app_->commands())
+    EXPECT_TRUE(!command.bar || key_name(command.keys[0]) == command.label.substr(0, 1)) << command.label;
+}
+
+TEST_F(DemoCommandsTest, TabReachesEveryButton) {
+  open("hand");
+  press(GLFW_KEY_TAB);
+  press(GLFW_KEY_TAB);
+  press(GLFW_KEY_ENTER);
+  EXPECT_TRUE(app_->view().dialogs.scene_list) << "the second button";
+  press(GLFW_KEY_ESCAPE);
+  EXPECT_EQ(app_->view().focus, -1);
+  press(GLFW_KEY_SPACE);
+  EXPECT_TRUE(app_->view().time.paused) << "without a focus, Space stops";
+}
+
+// Space stops blocks, curves, numbers and the replay, or none of them.
+TEST_F(DemoCommandsTest, SpaceStopsEverything) {
+  open("replay:" + save_strokes("strokes.csv"));
+  frames(30);
+  press(GLFW_KEY_SPACE);
+  EXPECT_TRUE(app_->session().replay()->paused() && app_->shown().models.stands);
+  const double at_s = app_->shown().models.now.loop_time_s;
+  frames(10);
+  EXPECT_EQ(app_->shown().models.now.loop_time_s, at_s);
+  press(GLFW_KEY_SPACE);
+  EXPECT_FALSE(app_->session().replay()->paused() || app_->view().time.paused);
+}
+
 TEST_F(DemoCommandsTest, ListsAreUsedWithKeysAlone) {
   open("mouse");
-  open_list(GLFW_KEY_W);
+  open_list(GLFW_KEY_V);
   press(GLFW_KEY_RIGHT);
   press(GLFW_KEY_SPACE);
   EXPECT_EQ(app_->view().settings.blocks, 2u);
@@ -143,7 +187,7 @@ TEST_F(DemoCommandsTest, ListsAreUsedWithKeysAlone) {
   EXPECT_FALSE(app_->view().dialogs.any());
 
   // The current scene has the focus at first.
-  open_list(GLFW_KEY_O);
+  open_list(GLFW_KEY_S);
   const ImGuiID own = ImGui::GetFocusID();
   press(GLFW_KEY_DOWN);
   EXPECT_NE(ImGui::GetFocusID(), own);
@@ -151,9 +195,9 @@ TEST_F(DemoCommandsTest, ListsAreUsedWithKeysAlone) {
   EXPECT_EQ(ImGui::GetFocusID(), own);
   press(GLFW_KEY_ENTER);
   EXPECT_FALSE(app_->view().dialogs.scene_list);
-  EXPECT_EQ(app_->session().scene().name, "skin");
+  EXPECT_TRUE(app_->session().scene().has_material());
 
-  open_list(GLFW_KEY_U);
+  open_list(GLFW_KEY_D);
   ASSERT_TRUE(until([&] { return !app_->view().devices.empty(); }));
   frames(4);
   for (int i = 0; i < 9; ++i) press(GLFW_KEY_UP);
@@ -179,7 +223,7 @@ TEST_F(DemoCommandsTest, KeysDoWhatTheHelpSays) {
   EXPECT_FALSE(app_->view().time.paused);
   press(GLFW_KEY_H);
   press(GLFW_KEY_L);
-  press(GLFW_KEY_M);
+  press(GLFW_KEY_O);
   EXPECT_TRUE(app_->view().dialogs.help && app_->view().details && app_->view().dialogs.file_list);
   press(GLFW_KEY_ESCAPE);
   EXPECT_FALSE(app_->view().dialogs.help || app_->view().details || app_->view().dialogs.file_list);
@@ -191,7 +235,7 @@ TEST_F(DemoCommandsTest, KeysDoWhatTheHelpSays) {
 TEST_F(DemoCommandsTest, TheKeysAreListedInsideTheSmallestWindow) {
   open("hand");
   press(GLFW_KEY_H);
-  press(GLFW_KEY_M);
+  press(GLFW_KEY_O);
   for (const auto& [width, height] : {std::pair{900, 600}, std::pair{800, 480}, std::pair{800, 1050}}) {
     glfwSetWindowSize(app_->window().handle(), width, height);
     frames(8);
@@ -209,24 +253,22 @@ TEST_F(DemoCommandsTest, TheKeysAreListedInsideTheSmallestWindow) {
 TEST_F(DemoCommandsTest, TheForceInTheHandIsScaledUntilItIsSwitchedOff) {
   open("hand");
   EXPECT_EQ(app_->session().controls().scale, ForceScale{});
-  press(GLFW_KEY_J);
+  press(GLFW_KEY_F);
   EXPECT_TRUE(app_->view().scales_force);
   EXPECT_NE(ImGui::FindWindowByName("feel"), nullptr);
   app_->session().controls().scale = {2.0, 5.0};
   frames(2);
-  press(GLFW_KEY_J);
+  press(GLFW_KEY_F);
   EXPECT_EQ(app_->session().controls().scale, ForceScale{});
 }
 
 TEST_F(DemoCommandsTest, SavesWhatTheCurvesShow) {
   open("hand");
   frames(30);
-  press(GLFW_KEY_S);
-  ASSERT_TRUE(until([&] { return told(".svg and .csv"); }));
-  std::size_t figures = 0;
-  for (const auto& entry : std::filesystem::directory_iterator(folder_.file("palpate")))
-    figures += entry.path().extension() == ".svg" || entry.path().extension() == ".csv" ? 1 : 0;
-  EXPECT_EQ(figures, 2u);
+  for (int what = 0; what < 4; ++what) export_item(what);
+  ASSERT_TRUE(until([&] { return told(".svg and .csv") || exported("curves-", ".svg") > 0; }));
+  ASSERT_TRUE(until([&] { return exported("picture-", ".png") == 1 && exported("table-", ".csv") == 1; }));
+  EXPECT_EQ(exported("curves-", ".svg") + exported("curves-", ".csv"), 2u);
 }
 
 TEST_F(DemoCommandsTest, WithoutGnuplotTheCurvesAreSavedAsData) {
@@ -234,14 +276,14 @@ TEST_F(DemoCommandsTest, WithoutGnuplotTheCurvesAreSavedAsData) {
   frames(30);
   const std::string path = std::getenv("PATH");
   setenv("PATH", folder_.path().c_str(), 1);
-  press(GLFW_KEY_S);
+  export_item(1);
   EXPECT_TRUE(until([&] { return told(".csv without a figure: found no gnuplot in PATH, which draws the figures"); }));
   setenv("PATH", path.c_str(), 1);
 }
 
 TEST_F(DemoCommandsTest, SavesTheModelInTheHand) {
   open("hand");
-  press(GLFW_KEY_K);
+  export_item(4);
   ASSERT_TRUE(told("saved soft to "));
   std::size_t models = 0;
   for (const auto& entry : std::filesystem::directory_iterator(folder_.file("palpate")))
@@ -262,7 +304,7 @@ TEST_F(DemoCommandsTest, APressIsExplainedUntilItWasDone) {
 
 TEST_F(DemoCommandsTest, SaysWhatThereIsNotForAKey) {
   open("hand");
-  for (int i = 0; i < 3; ++i) press(GLFW_KEY_D);
+  for (int i = 0; i < 3; ++i) press(GLFW_KEY_A);
   EXPECT_EQ(app_->session().controls().dead_man, DeadMan::off);
   EXPECT_TRUE(told("no device that pushes"));
   EXPECT_EQ(app_->view().toasts.size(), 1u) << "the same notice is there once";

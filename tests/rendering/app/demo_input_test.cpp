@@ -66,17 +66,19 @@ TEST_F(DemoInputTest, SaysWhenTheProbeIsAwayFromTheData) {
   EXPECT_TRUE(until([&] { return app_->shown().models.out_of_domain(); }));
 }
 
-TEST_F(DemoInputTest, MovingTheMouseOverTheBlockTakesOverFromTheHand) {
+// The pointer drives only after a press of the button on a block; the depth is the way from there.
+TEST_F(DemoInputTest, PullingDownOnABlockTakesOverFromTheHand) {
   open("auto");
-  // Beside the block the mouse has no effect; over it, a lower position is deeper.
-  point_at(20.0, 300.0);
-  EXPECT_TRUE(app_->session().tool_input()->hand_is_exploring());
-  move_mouse(384.0, 380.0);
+  point_at(384.0, 380.0);
+  EXPECT_TRUE(app_->session().tool_input()->hand_is_exploring()) << "a movement alone presses nothing";
+  left_button(GLFW_PRESS);
   ASSERT_TRUE(until([&] { return !app_->session().tool_input()->hand_is_exploring(); }));
   frames(30);
   const double high_m = app_->session().newest().tick.position_m;
-  move_mouse(384.0, 430.0);
+  move_mouse(384.0, 480.0);
   ASSERT_TRUE(until([&] { return app_->session().newest().tick.position_m > high_m + 0.001; }));
+  left_button(GLFW_RELEASE);
+  EXPECT_TRUE(until([&] { return app_->session().newest().tick.position_m < 0.0; })) << "released";
 }
 
 // The window does not draw for 0.3 s. The loop still moves the probe at every tick.
@@ -132,21 +134,41 @@ TEST_F(DemoInputTest, ATapOfAKeyIsNotLostOnASlowFrame) {
   EXPECT_TRUE(until([&] { return app_->session().newest().tick.position_m > before_m + 2e-5; }));
 }
 
-// The probe follows the mouse in the whole picture, also beside the block. At the lower edge it is at the depth where
-// the data end, and it is lifted when the mouse leaves the picture.
-TEST_F(DemoInputTest, TheProbeFollowsTheMouseInAllOfThePicture) {
-  open("mouse");
-  app_->view().settings.blocks = kAllBlocks;
-  point_at(384.0, 300.0);
-  move_mouse(700.0, 640.0);
+// Two rows of blocks: the tool does not let go where the pointer reaches the lower row, and not over the buttons.
+TEST_F(DemoInputTest, OneStrokeDownIsOnePressThroughBothRows) {
+  start(request("silicone_block", "mouse"));
+  ASSERT_TRUE(until([&] { return app_->session().models().all_settled() && app_->shown().blocks.size() == 3; }));
   const double known_m = app_->session().models().trained_depth_m();
-  ASSERT_LT(known_m, 0.1);
-  EXPECT_TRUE(until([&] { return app_->session().newest().tick.position_m > 0.8 * known_m; }));
-  frames(30);
-  EXPECT_LT(app_->session().newest().tick.position_m, 1.1 * known_m) << "a hard press ends where the data end";
-  move_mouse(1000.0, 640.0);
+  point_at(384.0, 200.0);
+  left_button(GLFW_PRESS);
+  double last_m = -1.0;
+  for (double y = 240.0; y <= 700.0; y += 40.0) {
+    move_mouse(384.0, y, 25);
+    EXPECT_GT(app_->session().newest().tick.position_m, last_m - 1e-4) << y;
+    last_m = app_->session().newest().tick.position_m;
+  }
+  EXPECT_GT(last_m, 0.7 * known_m) << "the spring of the hand takes the rest";
+  EXPECT_LT(last_m, 1.1 * known_m) << "a hard press ends where the data end";
+  move_mouse(1000.0, 700.0, 20);
+  EXPECT_GT(app_->session().newest().tick.position_m, 0.6 * known_m) << "until the button is released";
+  left_button(GLFW_RELEASE);
   EXPECT_TRUE(until([&] { return app_->session().newest().tick.position_m < 0.0; }));
-  EXPECT_TRUE(told("the probe is lifted"));
+}
+
+// A drag on the curves shows a moment of the past everywhere.
+TEST_F(DemoInputTest, ADragOnTheCurvesMovesBlocksAndNumbers) {
+  open("hand");
+  ASSERT_TRUE(until([&] { return app_->session().comparison().history().size() > 3000; }));
+  point_at(1000.0, 60.0);
+  left_button(GLFW_PRESS, 4);
+  const WindowView& shown = app_->shown();
+  ASSERT_TRUE(shown.models.stands);
+  const double at_s = shown.models.now.loop_time_s;
+  EXPECT_LT(at_s, app_->session().newest().loop_time_s - 0.5);
+  move_mouse(960.0, 60.0, 4);
+  EXPECT_LT(app_->shown().models.now.loop_time_s, at_s) << "to the left is earlier";
+  left_button(GLFW_RELEASE, 4);
+  EXPECT_FALSE(app_->shown().models.stands) << "back to now";
 }
 
 }  // namespace

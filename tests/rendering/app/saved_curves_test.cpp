@@ -1,5 +1,5 @@
 // The saved figure and the saved table contain the same samples.
-#include "rendering/app/demo_files.h"
+#include "rendering/app/demo_app.h"
 
 #include <gtest/gtest.h>
 

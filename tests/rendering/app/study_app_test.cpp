@@ -31,7 +31,9 @@ class StudyAppTest : public ::testing::Test {
   }
   void start(std::shared_ptr<const StrokePair> strokes) {
     app_.reset();
-    auto app = StudyApp::create({}, "hand", std::move(strokes), false);  // tests do not need real-time priority
+    std::function<StudyApp::Strokes()> prepare;
+    if (strokes) prepare = [&]() -> StudyApp::Strokes { return strokes; };
+    auto app = StudyApp::create({}, "hand", prepare, false);  // tests do not need real-time priority
     ASSERT_TRUE(app.ok()) << app.error().message;
     app_ = std::move(*app);
     app_->frame();
@@ -74,11 +76,19 @@ TEST_F(StudyAppTest, StoresTheAnswerToForcesAndToStrokes) {
     ASSERT_TRUE(until(StudyState::answering));
     const StudyTrial trial = app_->session()->trial();
     const bool second = strokes ? test::truly_like(trial) : test::truly_larger(trial);
+    app_->frame();
+    press(GLFW_KEY_1);
+    EXPECT_EQ(app_->session()->state(), StudyState::answering) << "a slip of the finger";
+    for (int i = 0; i < 20; ++i) app_->frame();
     press(second ? GLFW_KEY_2 : GLFW_KEY_1);
     ASSERT_TRUE(until(StudyState::presenting));
     EXPECT_EQ(app_->session()->view().was_correct, true);
     press(GLFW_KEY_ESCAPE);
+    EXPECT_NE(app_->session()->state(), StudyState::aborted) << "it asks";
+    press(GLFW_KEY_E);
     EXPECT_EQ(app_->session()->state(), StudyState::aborted);
+    press(GLFW_KEY_ENTER);
+    EXPECT_TRUE(app_->closing());
     app_.reset();
     const auto data = read_study(strokes ? "discriminate-S01.csv" : "study-S01.csv");
     ASSERT_TRUE(data.ok()) << data.error().message;
@@ -93,7 +103,7 @@ TEST_F(StudyAppTest, StoresTheAnswerToForcesAndToStrokes) {
   }
 }
 
-TEST_F(StudyAppTest, ShowsTheResultAtTheEnd) {
+TEST_F(StudyAppTest, EndsWithoutTheResult) {
   const StudyHeader header{"S01", test::example_strokes(0.8)};
   {
     auto file = StudyFile::open("discriminate-S01.csv", header);

@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "rendering/panels/panel.h"
-#include "rendering/panels/scene_overlay.h"
 #include "tests/support/message_parts.h"
 
 namespace palpate {
@@ -47,9 +46,10 @@ TEST(PanelWords, AStallComesBeforeAFaultAndAFaultBeforeAlarmsThatAreOver) {
 
 TEST(PanelWords, MissedDeadlinesAndSlowPicturesAreNamed) {
   HealthView health;
+  EXPECT_EQ(health_words(health, 20.0, true).text.find("frames"), std::string::npos) << "the start";
+  health.loop.ticks = 20000;
   EXPECT_FALSE(health_words(health, 20.0, true).problem) << "nothing that is felt is late";
   EXPECT_TRUE(test::has_parts(health_words(health, 20.0, true).text, {"20 frames"}));
-  health.loop.ticks = 5000;
   health.loop.missed_deadlines = 41;
   EXPECT_TRUE(test::has_parts(health_words(health, 20.0, true).text, {"20 frames", "41 deadlines"}));
   health.missed_of_late = 0.025;
@@ -87,23 +87,56 @@ TEST(PanelWords, WarnsOutOfDomainOnlyInContactAndOfTheActiveModel) {
   EXPECT_EQ(data_warning(models), "");
 }
 
-// The big number is that of the headline and of the table; the user's own press has a smaller one.
-TEST(PanelWords, TheBigNumberIsThatOfTheHeadline) {
+// One block of numbers for the selected model: of the test, and of the press that is seen.
+TEST(PanelWords, TheBigNumberIsThatOfTheSelectedModel) {
   ModelsView models = view_of({ready_slot("greedy-100"), ready_slot("trend")}, true);
-  EXPECT_EQ(big_number(models).number, "") << "there is no verdict yet";
+  EXPECT_EQ(big_number(models).number, "–") << "not known yet";
+  models.test_name = "another press";
+  models.slots[0].errors.samples = 100;
+  models.slots[0].errors.p99_error_over_jnd = 0.824;
   models.slots[1].errors.p99_error_over_jnd = 3.83;
   models.verdict.chosen = 1;
-  EXPECT_EQ(big_number(models).number, jnd_text(3.83));
-  EXPECT_EQ(jnd_text(3.83), "3.8") << "as many digits as a quantile has";
-  EXPECT_TRUE(test::has_parts(big_number(models).what, {"notice", "trend"}));
+  EXPECT_EQ(big_number(models).number, "0.82");
+  EXPECT_EQ(big_number(models).what, "of a JND in 99 % of the test: greedy-100");
   EXPECT_EQ(big_number(models).below, "") << "nothing was pressed";
-  models.slots[0].press_samples = 100;
-  models.slots[0].press_p99_over_jnd = 0.42;
-  EXPECT_EQ(big_number(models).below, "this press: 0.42 with greedy-100");
-  models.in_contact = false;
-  EXPECT_EQ(big_number(models).number, "3.8") << "in the air it says the same";
+  models.now.press_over_jnd[0] = 1.23F;
+  EXPECT_EQ(big_number(models).below, "1.2 in this press");
+  models.slots[0].refitting = true;
+  EXPECT_EQ(big_number(models).number, "–") << "the figure is of the model before";
+  models.slots[0].refitting = false;
   models.reference = 0;
   EXPECT_EQ(big_number(models).below, "") << "it is the reference";
+  models.selected = 1;
+  EXPECT_EQ(big_number(models).number, "–") << "without samples there is no 0.00";
+}
+
+TEST(PanelWords, TheTableIsACsv) {
+  ModelsView models = view_of({ready_slot("greedy-100"), ready_slot("trend")}, true);
+  models.counted = "10 samples";
+  models.slots[0].centres = 100;
+  models.slots[0].errors.samples = 10;
+  models.slots[0].errors.p99_error_over_jnd = 0.5;
+  models.slots[0].errors.within_jnd = 1.0;
+  models.slots[0].tick.median_ns = 330.0;
+  EXPECT_EQ(
+      table_csv(models),
+      "# 10 samples\nmodel,centres,p99_error_over_jnd,within_jnd,tick_ns\ngreedy-100,100,0.5,1,330\ntrend,0,,,\n");
+}
+
+TEST(PanelWords, TwoModelsAreComparedAloneAndASceneThatCannotMoveSaysNothing) {
+  ModelsView models = view_of({ready_slot("a"), ready_slot("b"), ready_slot("c")}, true);
+  EXPECT_EQ(models.drawn(), (std::vector<std::size_t>{1, 2, 0}));
+  models.second = 2;
+  EXPECT_EQ(models.drawn(), (std::vector<std::size_t>{2, 0}));
+  WindowView shown;
+  ViewState view;
+  shown.has_tool = shown.hand_explores = true;
+  EXPECT_EQ(press_hint(shown, view), "") << "no model, no material";
+  shown.has_material = true;
+  EXPECT_NE(press_hint(shown, view).find("pull down"), std::string::npos);
+  shown.hand_explores = false;
+  shown.health.newest.rendered_N = 1.0;
+  EXPECT_EQ(press_hint(shown, view), "") << "it was done";
 }
 
 TEST(PanelWords, WithoutATruthTheBigNumberIsThePrediction) {

@@ -24,9 +24,11 @@ TEST_F(TimePlotTest, ReadsZoomsAndRunsAgain) {
   move(900.0);
   EXPECT_FALSE(std::isnan(time.hover_s)) << "a crosshair";
   const double first_s = time.hover_s;
+  send(glfwSetKeyCallback, GLFW_KEY_LEFT_SHIFT, 0, GLFW_PRESS, GLFW_MOD_SHIFT);
   button(GLFW_PRESS);
   move(1000.0);
   button(GLFW_RELEASE);
+  send(glfwSetKeyCallback, GLFW_KEY_LEFT_SHIFT, 0, GLFW_RELEASE, 0);
   ASSERT_TRUE(time.paused);
   EXPECT_LT(time.shown_s, 0.6 * kShown_s);
   EXPECT_NEAR(time.end_s(0.0) - time.shown_s, first_s, 1.0) << "from where the drag began; the curves ran on meanwhile";

@@ -1,8 +1,9 @@
-#include "rendering/panels/view_state.h"
+#include "rendering/panels/window_view.h"
 
 #include <gtest/gtest.h>
 
 #include "rendering/panels/panel.h"
+#include "rendering/ui/ui.h"
 
 namespace palpate {
 namespace {
@@ -21,6 +22,21 @@ TEST(CurveTime, ZoomsStopsAndGoesOn) {
   time.run();
   EXPECT_DOUBLE_EQ(time.end_s(200.0), 200.0);
   EXPECT_DOUBLE_EQ(time.shown_s, kShown_s);
+}
+
+TEST(CurveTime, ADragShowsAMomentAndReturns) {
+  CurveTime time;
+  EXPECT_DOUBLE_EQ(time.at_s(100.0), 100.0);
+  time.drag_to(97.0, 100.0);
+  time.drag_to(96.0, 105.0);
+  EXPECT_DOUBLE_EQ(time.at_s(110.0), 96.0);
+  EXPECT_DOUBLE_EQ(time.end_s(110.0), 100.0) << "the curves stand still meanwhile";
+  time.end_drag();
+  EXPECT_DOUBLE_EQ(time.at_s(110.0), 110.0) << "now";
+  time.pause(120.0);
+  time.drag_to(115.0, 120.0);
+  time.end_drag();
+  EXPECT_DOUBLE_EQ(time.at_s(130.0), 120.0) << "stopped before, stopped after";
 }
 
 TEST(Layout, ThePanelIsBesideTheSceneOrBelowIt) {

@@ -1,4 +1,4 @@
-#include "rendering/picture/camera.h"
+#include "rendering/picture/block_view.h"
 
 #include <gtest/gtest.h>
 

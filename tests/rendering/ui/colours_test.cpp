@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <array>
-#include <glm/geometric.hpp>
+#include <cmath>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "models/correction/methods.h"
 #include "scenes/scene/scene.h"
@@ -75,15 +77,58 @@ TEST(Colours, AnOutlineIsSeenOnEveryBlockAndBesideEveryError) {
   }
 }
 
-TEST(Colours, MethodsDifferFromEachOtherAndFromTheReference) {
-  for (const Theme theme : {Theme::light, Theme::dark}) {
-    for (const char* a : kMethods) {
-      EXPECT_GT(glm::distance(method_colour(a, theme), reference_colour(theme)), 0.3F) << a;
-      for (const char* b : kMethods) {
-        if (a == b) continue;
-        EXPECT_GT(glm::distance(method_colour(a, theme), method_colour(b, theme)), 0.25F) << a << ", " << b;
-      }
+// CIELAB of a colour as it is seen; `seen`: a matrix on linear RGB.
+using Matrix = std::array<std::array<double, 3>, 3>;
+std::array<double, 3> lab(const Rgb& colour, const Matrix& seen) {
+  std::array<double, 3> linear{}, mixed{}, f{};
+  for (int i = 0; i < 3; ++i) {
+    const double value = static_cast<double>(colour[i]);
+    linear[static_cast<std::size_t>(i)] = value <= 0.04045 ? value / 12.92 : std::pow((value + 0.055) / 1.055, 2.4);
+  }
+  const auto times = [](const Matrix& m, const std::array<double, 3>& v) {
+    std::array<double, 3> out{};
+    for (std::size_t i = 0; i < 3; ++i) out[i] = m[i][0] * v[0] + m[i][1] * v[1] + m[i][2] * v[2];
+    return out;
+  };
+  mixed = times(seen, linear);
+  for (double& value : mixed) value = std::clamp(value, 0.0, 1.0);
+  constexpr Matrix kXyz{
+      {{0.4124564, 0.3575761, 0.1804375}, {0.2126729, 0.7151522, 0.0721750}, {0.0193339, 0.1191920, 0.9503041}}};
+  constexpr std::array<double, 3> kWhite{0.95047, 1.0, 1.08883};
+  const std::array<double, 3> xyz = times(kXyz, mixed);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double share = xyz[i] / kWhite[i];
+    f[i] = share > 216.0 / 24389.0 ? std::cbrt(share) : share * 841.0 / 108.0 + 4.0 / 29.0;
+  }
+  return {116.0 * f[1] - 16.0, 500.0 * (f[0] - f[1]), 200.0 * (f[1] - f[2])};
+}
+
+// Machado, Oliveira & Fernandes (2009), severity 1.
+TEST(Colours, WhatMustBeToldApartDiffersForEveryEye) {
+  constexpr Matrix kEyes[] = {
+      {{{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}}},
+      {{{0.367322, 0.860646, -0.227968}, {0.280085, 0.672501, 0.047413}, {-0.011820, 0.042940, 0.968881}}},
+      {{{0.152286, 1.052583, -0.204868}, {0.114503, 0.786281, 0.099216}, {-0.003882, -0.048116, 1.051998}}}};
+  constexpr double kLeast = 20.0;
+  for (const Matrix& eye : kEyes) {
+    const auto differ = [&](const Rgb& a, const Rgb& b) {
+      const auto one = lab(a, eye), other = lab(b, eye);
+      return std::hypot(one[0] - other[0], one[1] - other[1], one[2] - other[2]);
+    };
+    for (const Theme theme : {Theme::light, Theme::dark}) {
+      std::vector<std::pair<std::string, Rgb>> lines{{"truth", reference_colour(theme)}};
+      for (const char* method : {"trend+greedy", "voxel", "random", "kdtree", "greedy"})
+        lines.emplace_back(method, method_colour(method, theme));
+      for (std::size_t i = 0; i < lines.size(); ++i)
+        for (std::size_t k = 0; k < i; ++k)
+          EXPECT_GE(differ(lines[i].second, lines[k].second), kLeast) << lines[i].first << ", " << lines[k].first;
+      for (const double error : {0.0, 0.25, 0.5, 0.75, 1.0})
+        EXPECT_GE(differ(error_colour(error), reference_colour(theme)), kLeast)
+            << "the truth is green, no error " << error;
     }
+    EXPECT_GE(differ(error_colour(0.0), error_colour(0.5)), kLeast);
+    EXPECT_GE(differ(error_colour(0.5), error_colour(1.0)), kLeast);
+    EXPECT_GE(differ(error_colour(1.0), kAboveJndColour), kLeast) << "just noticeable, and above";
   }
 }
 

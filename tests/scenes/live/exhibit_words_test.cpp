@@ -32,11 +32,12 @@ TEST(ExhibitWords, FillInNumbersAndShowMissingKeys) {
 TEST(ExhibitTally, OutlivesARestart) {
   const test::TemporaryFolder folder;
   const std::string path = folder.file("tally");
-  EXPECT_EQ(read_tally(path).answers, 0u);
-  ASSERT_TRUE(write_tally(path, {12, 9}).ok());
-  EXPECT_EQ(read_tally(path).answers, 12u);
-  EXPECT_EQ(read_tally(path).as_expected, 9u);
-  EXPECT_EQ(read_tally(folder.with_file("broken", "3 7")).answers, 0u);
+  EXPECT_EQ(read_tally(path).answers[0], 0u);
+  ASSERT_TRUE(write_tally(path, {{12, 11, 10}, {1, 4, 9}}).ok());
+  EXPECT_EQ(read_tally(path).answers[1], 11u);
+  EXPECT_EQ(read_tally(path).fooled[2], 9u);
+  for (const char* broken : {"3 7 1 1 1 1", "3", ""})
+    EXPECT_EQ(read_tally(folder.with_file("broken", broken)).answers[0], 0u) << broken;
 }
 
 }  // namespace

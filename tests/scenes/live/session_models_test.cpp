@@ -38,8 +38,9 @@ TEST(SessionModels, ItsRecordingCanBeFitted) {
   EXPECT_LE(times.first_model_s, times.all_models_s);
   EXPECT_LE(times.all_models_s, times.verdict_s);
   ASSERT_TRUE(session->start_recording(folder.file("live.csv")).ok());
-  ASSERT_TRUE(frames_until(
-      *session, [&] { return session->figures(0).press_samples > 500 && session->recording().seconds > 2.0; }));
+  ASSERT_TRUE(frames_until(*session, [&] {
+    return session->comparison().figures(0).errors.samples > 500 && session->recording().seconds > 2.0;
+  }));
   EXPECT_GT(session->figures(0).errors.within_jnd, 0.9);
   EXPECT_EQ(session->figures(0).errors.samples, session->figures(1).errors.samples);
   session->stop_recording();
@@ -61,11 +62,50 @@ TEST(SessionModels, TheVerdictDoesNotDependOnWhatIsPressed) {
   const std::uint64_t samples = session->figures(0).errors.samples;
   EXPECT_GT(samples, 1000u) << "nobody has pressed";
   session->tool_input()->set_target(0.004, session->newest().loop_time_s);
-  ASSERT_TRUE(frames_until(*session, [&] { return session->figures(0).press_samples > 300; }));
+  ASSERT_TRUE(frames_until(*session, [&] { return session->comparison().figures(0).errors.samples > 300; }));
   session->reset_figures();
-  EXPECT_EQ(session->figures(0).press_samples, 0u);
+  EXPECT_EQ(session->comparison().figures(0).errors.samples, 0u);
   EXPECT_EQ(session->figures(0).errors.samples, samples);
   EXPECT_EQ(session->verdict().headline, headline);
+}
+
+// The moment of the largest error, of the test and of this session, with the ticks around it.
+TEST(SessionModels, TheWorstMomentIsFoundAndSaid) {
+  const Session session = must(LiveSession::open(session_request("elastic_block", "mouse", {"random-3", "trend"})));
+  ASSERT_TRUE(frames_until(*session, [&] { return session->verdict().chosen.has_value(); }));
+  const auto of_test = session->worst(0, true, 100.0);
+  ASSERT_TRUE(of_test);
+  EXPECT_TRUE(of_test->of_test);
+  EXPECT_NE(of_test->words.find(" mm"), std::string::npos) << of_test->words;
+  const ForceHistory& history = *of_test->history;
+  const HistoryPoint& worst = *history.last_until(of_test->at_s);
+  EXPECT_GE(worst.loop_time_s, 100.0);
+  float largest = 0.0F;
+  for (std::size_t i = 0; i < history.size(); ++i)
+    if (history[i].in_contact) largest = std::max(largest, std::abs(history[i].sustained_over_jnd[0]));
+  EXPECT_EQ(std::abs(worst.sustained_over_jnd[0]), largest);
+  EXPECT_FALSE(std::isnan(worst.force_N[1])) << "all models are there";
+  EXPECT_FALSE(session->worst(0, false, 100.0)) << "nothing was pressed";
+  session->tool_input()->set_target(0.004, session->newest().loop_time_s);
+  ASSERT_TRUE(frames_until(*session, [&] { return session->comparison().figures(0).errors.samples > 300; }));
+  const auto of_session = session->worst(0, false, 100.0);
+  ASSERT_TRUE(of_session);
+  EXPECT_FALSE(of_session->of_test || of_session->history);
+  const HistoryPoint& now = *session->comparison().history().last_until(of_session->at_s);
+  EXPECT_GE(now.press_over_jnd[0], std::abs(now.sustained_over_jnd[0]));
+}
+
+TEST(SessionModels, AModelIsAddedByItsNameAndTakenOutBeforeItIsFitted) {
+  const Session session = must(LiveSession::open(session_request("elastic_block", "hand", {"random-3"})));
+  ASSERT_TRUE(frames_until(*session, [&] { return session->models().all_settled(); }));
+  session->add_model("random-5");
+  session->add_model("greedy-200");
+  session->remove(2);
+  ASSERT_TRUE(frames_until(*session, [&] { return session->models().all_settled(); }));
+  EXPECT_EQ(session->models().info(1).name, "random-5");
+  EXPECT_EQ(session->models().ready_slots(), (std::vector<std::size_t>{0, 1}));
+  session->add_model("random-5");
+  EXPECT_EQ(session->models().ready_slots().size(), 2u) << "it is there already";
 }
 
 // Several requests in sequence, as when a slider is dragged: the last one counts. The tested sizes make a path.

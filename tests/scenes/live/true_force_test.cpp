@@ -1,5 +1,5 @@
 // The true force of the virtual material in the tick.
-#include "scenes/live/true_force.h"
+#include "scenes/live/comparison.h"
 
 #include <gtest/gtest.h>
 

@@ -89,11 +89,32 @@ TEST(ModelWorker, ReportsErrors) {
   EXPECT_TRUE(test::has_parts(wait_for(worker, 1)[0].model, {"\"skin\""}));
 }
 
+// A cancelled fit gives no model, and the next one is made.
+TEST(ModelWorker, AFitIsCancelledAndTheEstimateDoesNotGrow) {
+  ModelWorker worker(test::must(load_scene("elastic_block")), 1);
+  worker.add_job(1, request_of("greedy-200"), true);
+  worker.add_job(2, request_of("greedy-100"));
+  worker.add_job(3, request_of("random-10"));
+  ASSERT_TRUE(worker.start().ok());
+  while (!worker.progress()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  double left_s = worker.left_s();
+  worker.cancel_job(1);
+  worker.cancel_job(2);
+  std::vector<FinishedModel> made;
+  while (made.empty()) {
+    made = worker.read_finished();
+    EXPECT_LE(worker.left_s(), left_s);
+    left_s = worker.left_s();
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  EXPECT_EQ(made[0].job_id, 3u);
+}
+
 TEST(ModelWorker, EndsInTheMiddleOfAFit) {
   ModelWorker worker(test::must(load_scene("silicone_block")), 1);
   for (std::size_t i = 0; i < 8; ++i) worker.add_job(i, request_of("greedy"));
   ASSERT_TRUE(worker.start().ok());
-  while (worker.progress().empty()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  while (!worker.progress()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
   EXPECT_GT(worker.left_s(), 0.0);
 }
 

@@ -1,12 +1,15 @@
-// Fonts, sizes and colours of Dear ImGui, scaled with the window.
+// Dear ImGui in a window: fonts, sizes and colours, scaled with the window; its context, and what is drawn of it.
 // Thread guarantee: the window's thread.
 #pragma once
 
 #include <imgui.h>
 
 #include <string>
+#include <vector>
 
 #include "rendering/ui/colours.h"
+
+struct GLFWwindow;
 
 namespace palpate {
 
@@ -30,6 +33,8 @@ struct UiSize {
 // Units of the window per pixel of the design, which has 1080 lines, times the factor `larger`. Text has the same
 // physical size on displays of different resolution.
 float ui_scale(const UiSize& size, float larger) noexcept;
+// Text of a smaller scale is not legible.
+inline constexpr float kSmallestScale = 0.78F;
 // Factor `larger` for exhibits and studies, which are read from a distance.
 inline constexpr float kExhibitText = 1.5F;
 // Size of body text in a window of 1080 lines; in exhibits it is closer to that of headings.
@@ -63,6 +68,38 @@ class UiStyle {
   float scale_ = 0.0F;  // 0: no fonts yet
   float pixels_per_unit_ = 1.0F, body_px_ = kBody_px;
   Theme theme_ = Theme::light;
+};
+
+// A rectangle in pixels of a picture or of the window.
+struct Viewport {
+  int x = 0, y = 0, width = 0, height = 0;
+  bool empty() const noexcept { return width <= 0 || height <= 0; }
+  bool operator==(const Viewport&) const = default;
+};
+
+// The ImGui window beside the picture. It has most of the texts and curves, which are drawn into a picture of their
+// own.
+inline constexpr const char* kPanelWindow = "panel";
+
+class UiContext {
+ public:
+  // Set the callbacks of the window before: ImGui installs its own, which first call those.
+  explicit UiContext(GLFWwindow* window);
+  UiContext(const UiContext&) = delete;
+  UiContext& operator=(const UiContext&) = delete;
+  ~UiContext();
+
+  // `tapped`: keys of GLFW that were pressed and released since the last frame.
+  void begin_frame(const std::vector<int>& tapped = {});
+  // Draws all widgets since `begin_frame`.
+  void end_frame();
+  // After ImGui::Render, any number of times. Draws the widgets of kPanelWindow into a framebuffer that has the size of
+  // the panel, with the upper row first; and all others into the window.
+  static void draw_panel(const ImVec2& at, const ImVec2& size);
+  static void draw_others();
+
+ private:
+  GLFWwindow* window_;
 };
 
 }  // namespace palpate

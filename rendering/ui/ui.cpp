@@ -1,12 +1,17 @@
-#include "rendering/ui/ui_style.h"
+#include "rendering/ui/ui.h"
 
+#include <GLFW/glfw3.h>
+#include <backends/imgui_impl_glfw.h>
 #include <backends/imgui_impl_opengl3.h>
 
 #include <algorithm>
+#include <cfloat>
 #include <cmath>
 #include <filesystem>
 #include <glm/common.hpp>
 #include <initializer_list>
+#include <string_view>
+#include <utility>
 
 namespace palpate {
 namespace {
@@ -17,8 +22,6 @@ constexpr float kBig_px = 54.0F;
 constexpr float kDesignHeight = 1080.0F;
 // In a tall window the scale follows the width.
 constexpr float kDesignWidth = 1500.0F;
-// Text of a smaller scale is not legible.
-constexpr float kSmallestScale = 0.78F;
 constexpr float kLargestScale = 4.0F;
 // The scale changes in steps, so that resizing a window does not rebuild the fonts in every frame.
 constexpr float kScaleStep = 0.04F;
@@ -31,6 +34,26 @@ constexpr const char* kFontFiles[] = {
 // Latin letters and the signs that the panel uses.
 constexpr ImWchar kGlyphs[] = {0x20,   0xFF,   0x2013, 0x2026, 0x2190, 0x2193, 0x2264,
                                0x2265, 0x25A0, 0x25CF, 0x3BC,  0x3C4,  0};
+
+// Draws the lists of the panel, or all others.
+void draw_lists(bool of_panel, ImDrawData data) {
+  std::vector<ImDrawList*> lists;
+  for (int i = 0; i < data.CmdListsCount; ++i) {
+    const char* owner = data.CmdLists[i]->_OwnerName;
+    const bool panel = owner != nullptr && std::string_view(owner).rfind(kPanelWindow, 0) == 0;
+    if (panel == of_panel) lists.push_back(data.CmdLists[i]);
+  }
+  // In the panel's picture, y points down.
+  const auto flip = [&] {
+    for (ImDrawList* list : lists)
+      for (ImDrawCmd& command : list->CmdBuffer) std::swap(command.ClipRect.y, command.ClipRect.w);
+  };
+  data.CmdLists = lists.data();
+  data.CmdListsCount = static_cast<int>(lists.size());
+  if (of_panel) flip();
+  ImGui_ImplOpenGL3_RenderDrawData(&data);
+  if (of_panel) flip();
+}
 
 }  // namespace
 
@@ -115,5 +138,50 @@ void UiStyle::set_colours() {
       {ImGuiCol_FrameBgHovered, ImGuiCol_ButtonHovered, ImGuiCol_HeaderHovered});
   set(glm::mix(p.raised, p.text, 0.22F), 1.0F, {ImGuiCol_FrameBgActive, ImGuiCol_ButtonActive, ImGuiCol_HeaderActive});
 }
+
+UiContext::UiContext(GLFWwindow* window) : window_(window) {
+  IMGUI_CHECKVERSION();
+  ImGui::CreateContext();
+  ImGui::GetIO().IniFilename = nullptr;  // ImGui stores no window positions
+  ImGui::GetIO().ConfigFlags |= ImGuiConfigFlags_NavEnableKeyboard;
+  ImGui_ImplGlfw_InitForOpenGL(window, true);
+  ImGui_ImplOpenGL3_Init("#version 330 core");
+}
+
+UiContext::~UiContext() {
+  ImGui_ImplOpenGL3_Shutdown();
+  ImGui_ImplGlfw_Shutdown();
+  ImGui::DestroyContext();
+}
+
+void UiContext::begin_frame(const std::vector<int>& tapped) {
+  ImGui_ImplOpenGL3_NewFrame();
+  ImGui_ImplGlfw_NewFrame();
+  // When the mouse leaves the window, no element is under it.
+  const bool held = ImGui::IsMouseDown(ImGuiMouseButton_Left) || ImGui::IsMouseDown(ImGuiMouseButton_Right);
+  if (!held && glfwGetWindowAttrib(window_, GLFW_HOVERED) == 0) ImGui::GetIO().MousePos = {-FLT_MAX, -FLT_MAX};
+  // ImGui samples its keys once a frame and would miss these.
+  const auto report = [&](bool down) {
+    for (const int key : tapped) ImGui::GetIO().KeysDown[key] = down;
+  };
+  report(true);
+  ImGui::NewFrame();
+  report(false);
+}
+
+void UiContext::end_frame() {
+  ImGui::Render();
+  ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+}
+
+void UiContext::draw_panel(const ImVec2& at, const ImVec2& size) {
+  ImDrawData data = *ImGui::GetDrawData();
+  data.DisplayPos = {at.x, at.y + size.y};
+  data.DisplaySize = {size.x, -size.y};
+  data.FramebufferScale.y = -data.FramebufferScale.y;
+  draw_lists(true, data);
+}
+
+void UiContext::draw_others() { draw_lists(false, *ImGui::GetDrawData()); }
 
 }  // namespace palpate
