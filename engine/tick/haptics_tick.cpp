@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "engine/base/cycle_clock.h"
-#include "engine/tick/sensor_identification.h"
+#include "engine/tick/motion_estimator.h"
 
 namespace palpate {
 namespace {

@@ -1,4 +1,4 @@
-#include "engine/tick/replay.h"
+#include "engine/tick/haptics_tick.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "engine/tick/jnd.h"
-#include "engine/tick/sensor_identification.h"
+#include "engine/tick/motion_estimator.h"
 
 namespace palpate {
 namespace {

@@ -10,7 +10,7 @@
 
 #include "engine/base/parallel.h"
 #include "engine/base/result.h"
-#include "models/correction/sites.h"
+#include "models/correction/methods.h"
 #include "models/linear/lapack.h"
 #include "models/model/correction.h"
 

@@ -5,7 +5,7 @@
 #include <map>
 
 #include "engine/base/text.h"
-#include "engine/tick/sensor_identification.h"
+#include "engine/tick/motion_estimator.h"
 
 namespace palpate {
 namespace {

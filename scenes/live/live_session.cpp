@@ -10,7 +10,7 @@
 #include "engine/base/text.h"
 #include "engine/live/pacer.h"
 #include "models/model/fitted_model.h"
-#include "models/samples/recording_faults.h"
+#include "models/samples/samples.h"
 #include "scenes/live/session_recordings.h"
 #include "scenes/live/true_force.h"
 #include "scenes/material/rig.h"

@@ -383,14 +383,6 @@ TEST(FaultRecorder, KeepsTheLastSecondAroundAFault) {
   EXPECT_EQ(whole_at(recorder, 4101, 9000, [](int) { return false; }), -1) << "told once";
 }
 
-TEST(FaultRecorder, TellsOfEveryFaultAndOfWhatThereIs) {
-  FaultRecorder recorder;
-  const auto faulty = [](int i) { return i == 500 || i == 550 || i == 2000; };
-  EXPECT_EQ(whole_at(recorder, 0, 3000, faulty), 600);
-  EXPECT_EQ(recorder.ticks().size(), 601u) << "the loop had not run for a second";
-  EXPECT_EQ(whole_at(recorder, 601, 3000, faulty), 2100) << "550 was part of the first";
-}
-
 TEST(FaultRecorder, WhatDoesNotStopTheForceIsNoFault) {
   FaultRecorder recorder;
   LoopSnapshot tick;

@@ -1,4 +1,4 @@
-#include "models/correction/sites.h"
+#include "models/correction/methods.h"
 
 #include <gtest/gtest.h>
 
@@ -46,19 +46,6 @@ Thinned thinned_by(Thinning thinning, const Samples& samples, const std::vector<
   EXPECT_EQ(result.sites.force_N.size(), result.sites.count());
   EXPECT_EQ(result.sites.fold.size(), static_cast<std::size_t>(result.sites.count()));
   return result;
-}
-
-// Noise fills the four dimensions, so that without the cap almost every sample would be a site.
-TEST(Thinning, CoverageNeverLeavesMoreThanItsCap) {
-  test::Numbers noise(1);
-  const Samples samples = samples_of(recording_of(80000, [&](int i) {
-    const double position_m = 3e-3 + 2e-3 * std::sin(0.02 * i) * std::sin(0.0013 * i) + 5e-4 * noise.next();
-    return std::pair{position_m, 0.5 + 300.0 * position_m + 0.1 * noise.next()};
-  }));
-  const Thinned thinned = thinned_by(Thinning::coverage, samples, test::paper_features());
-  EXPECT_LE(static_cast<std::size_t>(thinned.sites.count()), kCoverageSites);
-  EXPECT_GT(static_cast<std::size_t>(thinned.sites.count()), kCoverageSites / 10);
-  EXPECT_EQ(thinned.sites.samples.sum(), static_cast<double>(samples.contact.size()));
 }
 
 // The tool rests at ten positions, and the only feature is depth: ten sites, each with the mean of its
