@@ -269,26 +269,6 @@ TEST_P(FeatureLanes, BristlesFollowTheirEquations) {
 // The memory of features: relaxation times that depend on depth, and the memory kept in an exchange of models
 // (engine/tick/features.h).
 
-// The same motion relative to a surface at half a millimetre gives the same features.
-TEST(FeatureMemory, ASurfaceDeeperThanZeroOnlyMovesTheZero) {
-  std::vector<FeatureSpec> specs = {FeatureSpec{},
-                                    {FeatureKind::velocity},
-                                    creep({2.0}, stiffening()),
-                                    spectrum({0.3}, stiffening()),
-                                    stops({1e-4}, stiffening())};
-  FeatureFilter plain(specs);
-  specs[0].surface_position_m = 0.5e-3;
-  FeatureFilter moved(specs);
-  for (int i = 0; i < 5000; ++i) {
-    const double position_m = closed_motion_m(1e-3 * i) - 3e-3;
-    const FeatureVector& a = feed(plain, 1e-3 * i, position_m, 0.01);
-    const FeatureVector& b = feed(moved, 1e-3 * i, position_m + 0.5e-3, 0.01);
-    ASSERT_EQ(a.in_contact, b.in_contact);
-    // Positions differ by rounding, 1e-19 m at some N/mm.
-    for (std::size_t k = 0; k < specs.size(); ++k) ASSERT_NEAR(a.values[k], b.values[k], 1e-12) << k;
-  }
-}
-
 // A complete material. Energy returned in a cycle may have been stored in an earlier one, so the sum over all cycles
 // from rest must be positive.
 TEST(FeatureMemory, TimesThatSlowMakeNoEnergy) {

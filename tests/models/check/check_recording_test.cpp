@@ -65,23 +65,6 @@ void first_seconds(Recording& recording, double from_s, double seconds) {
                 [&](const RecordingRow& row) { return row.time_s < from_s || row.time_s > from_s + seconds; });
 }
 
-// Time in air between two presses is not a hold, although the tool comes back to where it left the surface.
-TEST(CheckRecording, AHoldIsInContact) {
-  Recording recording;
-  constexpr double kAir_m = -0.2e-3;
-  for (int i = 0; i < 4000; ++i) {
-    const double time_s = 0.005 * i;
-    const double in_round_s = std::fmod(time_s, 4.0);  // 2 s of press at 5 mm/s, then 2 s in air
-    const double position_m = std::max(kAir_m, 5e-3 * (1.0 - std::abs(in_round_s - 1.0)));
-    recording.rows.push_back(
-        {.time_s = time_s, .position_m = position_m, .force_N = 400.0 * std::max(0.0, position_m)});
-  }
-  const RecordingCheck check = checked(recording, kSilicone);
-  const Finding* found = find(check, "no_hold");
-  ASSERT_NE(found, nullptr) << all_of(check);
-  EXPECT_LT(found->value, 0.1);
-}
-
 // A press of 8 s to 5 mm; its force relaxes with `relaxation_s` by a half.
 Recording press_and_hold(double relaxation_s) {
   Recording recording;
@@ -236,16 +219,6 @@ TEST(CheckRecording, TellsAHeldOrQuantisedTopFromClipping) {
       EXPECT_NE(find(limited, "clipping"), nullptr) << place << "\n" << all_of(limited);
     }
   }
-}
-
-TEST(CheckRecording, FindsAMonotonicCompressionOnlyForASceneWithMemory) {
-  Recording recording;
-  for (int i = 0; i < 1000; ++i) {
-    const double depth_m = 1e-5 * i;
-    recording.rows.push_back({0.05 * i, depth_m, 500.0 * depth_m, 0.0, 0.0});
-  }
-  EXPECT_NE(find(checked(recording, kSilicone), "monotonic"), nullptr);
-  EXPECT_EQ(find(checked(recording, CheckRequest{}), "monotonic"), nullptr);
 }
 
 TEST(CheckRecording, BlamesNoVirtualMaterial) {

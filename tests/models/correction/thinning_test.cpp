@@ -99,27 +99,5 @@ TEST(Thinning, ForceReductionKeepsThePapersSamples) {
   EXPECT_EQ(thinned.step_N, 0.05);
 }
 
-// u = (x - mean) / sqrt(range 4 sigma).
-TEST(Normalisation, IsByRangeAndDeviation) {
-  const Samples samples = samples_of(test::example_recording(5000, 1000.0));
-  const Eigen::ArrayXXd x = test::must(features_at(samples, test::paper_features(), samples.contact));
-  const Normalisation normalisation = normalisation_of(x);
-  for (Eigen::Index k = 0; k < 4; ++k) {
-    const double mean = x.row(k).mean();
-    const double low = x.row(k).minCoeff();
-    const double high = x.row(k).maxCoeff();
-    const double deviation = std::sqrt((x.row(k) - mean).square().mean());
-    const double scale = std::sqrt((high - low) * 4.0 * deviation);
-    EXPECT_NEAR(normalisation.offset(k), mean, 1e-9 * scale);  // rounding of 5,000 terms
-    EXPECT_NEAR(normalisation.scale(k), scale, 1e-9 * scale);
-    EXPECT_EQ(normalisation.lower(k), low);
-    EXPECT_EQ(normalisation.upper(k), high);
-    // range^a (4 sigma)^(1 - a)
-    EXPECT_NEAR(normalisation.scale_of(0.0)(k), 4.0 * deviation, 1e-9 * scale);
-    EXPECT_NEAR(normalisation.scale_of(0.5)(k), scale, 1e-9 * scale);
-    EXPECT_NEAR(normalisation.scale_of(1.0)(k), high - low, 1e-9 * scale);
-  }
-}
-
 }  // namespace
 }  // namespace palpate

@@ -341,20 +341,6 @@ TEST(PrepareOnTheForce, FitsTwoTimesToTheRecording) {
   EXPECT_EQ(provenance.relaxation, "auto");
 }
 
-// The paper's low-passes take the place of Maxwell branches.
-TEST(PrepareOnTheForce, AListGivesItsRelaxationTimes) {
-  test::FitRequest request = test::on_the_force(test::default_request("silicone_block"));
-  request.plan.features = FeatureChoice::given;
-  request.plan.list = test::must(parse_feature_list("velocity,maxwell:0.17,maxwell:0.4+1.27"));
-  RigSettings settings = test::train_settings("silicone");
-  settings.seconds = 8.0;
-  const PreparedTraining prepared = test::prepare({test::rig_recording(settings)}, request);
-  EXPECT_EQ(relaxation_times_s(prepared.common.features), (std::vector{0.17, 0.4, 1.27}));
-  ASSERT_EQ(prepared.common.features.size(), 5u);
-  EXPECT_EQ(prepared.common.features[1].kind, FeatureKind::velocity);
-  EXPECT_EQ(prepared.common.features[4].kind, FeatureKind::lowpass_velocity);
-}
-
 // A porous solid under cyclic presses: the pressure of its fluid relaxes within times of 4 s / (2 n + 1)^2, and acts on
 // an area that grows with the depth, so that contact is lost while the tool retreats.
 RecordingPtr porous_presses(double frequency_per_s, double depth_m, double seconds) {

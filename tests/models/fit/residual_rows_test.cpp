@@ -164,22 +164,6 @@ TEST(FitBound, CoversNewUnitsAndGrowsAwayFromTheData) {
   EXPECT_GE(bound->at(1.0, 1.0), bound->at(1.0, 0.0) + 1.25) << "a quarter of the largest force";
 }
 
-// The bound depends on the absolute force, so that a material that pulls has the same one.
-TEST(FitBound, IsTheSameForPullingForces) {
-  test::Numbers numbers(5);
-  std::vector<Prediction> pushing, pulling;
-  for (int i = 0; i < 1000; ++i) {
-    const double force_N = between(numbers, 0.0, 5.0);
-    const double error_N = 0.05 * force_N * between(numbers, 0.0, 1.0);
-    pushing.push_back({error_N, force_N, 0.0, i / 100});
-    pulling.push_back({error_N, -force_N, 0.0, i / 100});
-  }
-  const auto of_pushing = bound_of(pushing);
-  const auto of_pulling = bound_of(pulling);
-  ASSERT_TRUE(of_pushing && of_pulling);
-  for (const double force_N : {0.0, 1.0, 5.0}) EXPECT_EQ(of_pulling->at(-force_N, 0.0), of_pushing->at(force_N, 0.0));
-}
-
 // One row of 50, too few for the 95 % quantile of all, has an error of 1 N: in no phase, or first, or deep, or fast.
 TEST(FitBound, HoldsInEveryPhase) {
   struct Phase {

@@ -135,15 +135,5 @@ TEST(Trend, IsItsClosedFormInsideTheData) {
   }
 }
 
-TEST(Trend, ContinuesAlongItsTangentBeyondTheReferenceDepth) {
-  const Trend trend = example_trend();
-  const double edge = at(trend, 5e-3, 0.0);
-  const double slope_N_per_u = 6.0;  // of the last weight (example_model.h)
-  EXPECT_NEAR(at(trend, 10e-3, 0.0), edge + slope_N_per_u, 1e-13);
-  EXPECT_NEAR(at(trend, 20e-3, 0.0), edge + 3.0 * slope_N_per_u, 1e-13);
-  // Beyond the edge the viscosities are constant.
-  EXPECT_NEAR(at(trend, 10e-3, 0.01) - at(trend, 10e-3, 0.0), at(trend, 5e-3, 0.01) - edge, 1e-13);
-}
-
 }  // namespace
 }  // namespace palpate

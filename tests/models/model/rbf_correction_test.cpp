@@ -224,19 +224,6 @@ TEST(DomainGuard, EverySiteIsCoveredAndTrusted) {
   }
 }
 
-// Sites near a point of the cover are left out, wherever that point is in its block.
-TEST(DomainGuard, NoTwoPointsOfACoverAreNearEachOther) {
-  for (const int dimension : {1, 2, 4, 8}) {
-    const DomainCover cover = make_cover(random_points(dimension, 4000, 3));
-    // The inner radius is 1.5 times the radius of the cover, at least 0.08; the latter is at least 0.03.
-    const double radius = cover.inner_radius > 0.08 ? cover.inner_radius / 1.5 : 0.03;
-    for (Eigen::Index i = 1; i < cover.points.cols(); ++i) {
-      const Eigen::MatrixXd earlier = cover.points.leftCols(i);
-      ASSERT_GT(nearest(earlier, cover.points.col(i)), radius * (1.0 - 1e-12)) << dimension << "-D, point " << i;
-    }
-  }
-}
-
 TEST(DomainGuard, FarAwayThereIsNoTrust) {
   const Eigen::MatrixXd sites = random_points(3, 500, 4);
   const DomainGuard guard(make_cover(sites));

@@ -81,15 +81,6 @@ TEST(Samples, OneRecordingOfThreeIsMoved) {
   }
 }
 
-TEST(Samples, WhereAllAreMovedTheTableIs) {
-  for (const double surface_m : {-12e-3, 12e-3}) {
-    const Samples samples = samples_of({presses(5, surface_m), presses(4, surface_m), presses(3, surface_m)});
-    EXPECT_NEAR(samples.surface_m, surface_m, kSurface_m);
-    for (const RecordingOffset& one : samples.offsets) EXPECT_EQ(one.offset_m, 0.0) << one.name;
-    expect_depths_and_forces(samples);
-  }
-}
-
 // Its forces cannot be told from those of another depth, whatever the other recordings show.
 TEST(Samples, ARecordingWithoutFreeAirHasNoOffsetOfItsOwn) {
   const Samples samples = samples_of({strokes_in_contact(6), presses(5), presses(4, 2e-3)});
@@ -122,15 +113,6 @@ TEST(Samples, WhereEveryPositionHasAForceTheSurfaceIsOutsideOfAll) {
   EXPECT_EQ(surface_m(-2e-3, 5, false), 0.0) << "fewer than ten rows and 1 %";
   EXPECT_LT(surface_m(-0.05e-3, 4000, false), -1e-3) << "hardly outside of 0: where the line through the forces is 0";
   EXPECT_GT(surface_m(-2e-3, 0, true), -1e-3) << "free air";
-}
-
-TEST(Samples, TheForceZeroOfEachRecordingIsSubtracted) {
-  const Samples samples = samples_of({presses(5), presses(4, 0.0, 0.3), presses(3, 0.0, -0.05)});
-  const double zeros_N[] = {0.0, 0.3, -0.05};
-  // Without noise it is exact to rounding.
-  for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(samples.offsets[k].force_zero_N, zeros_N[k], 1e-9);
-  EXPECT_EQ(samples.surface_m, 0.0);
-  expect_depths_and_forces(samples);
 }
 
 TEST(Samples, TheOrderOfRecordingsIsIrrelevant) {

@@ -289,15 +289,6 @@ TEST(Study, SimulatedSubjectsDiscriminateStrokes) {
   EXPECT_EQ(test::read_text(folder.file("again/results.csv")), test::read_text(out + "/results.csv"));
 }
 
-TEST(Study, RecordsTheSceneWithoutAFile) {
-  const test::TemporaryFolder folder;
-  const auto run =
-      test::must_run({"study", "simulate", "--discriminate", "--subjects", "1", "--out", folder.file("out")});
-  EXPECT_TRUE(
-      test::has_parts(run.out, {"reference    recorded force\ncomparison   trend+greedy-100\nstroke       silicone_2, ",
-                                "Predicted below the JND"}));
-}
-
 TEST(Study, RefusesWrongUsage) {
   EXPECT_EQ(run_palpate({"study"}).exit_code, 2);
   EXPECT_EQ(run_palpate({"study", "simulate"}).exit_code, 2);
