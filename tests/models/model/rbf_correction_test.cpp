@@ -181,18 +181,6 @@ TEST(GridCorrection, AgreesWithThePlainGridInsideAndOutsideTheBox) {
   }
 }
 
-TEST(GridCorrection, ReproducesAMultilinearFunction) {
-  VoxelGrid grid = even_grid(-1.0, 2.0, {4, 2, 7});
-  const auto value = [](const auto& x) { return 1.0 + x[0] - 2.0 * x[1] * x[2] + 0.5 * x[0] * x[1] * x[2]; };
-  ASSERT_TRUE(fill_grid(grid, [&](const Eigen::MatrixXd& points, Eigen::VectorXd& out) {
-                for (Eigen::Index i = 0; i < points.cols(); ++i) out[i] = value(points.col(i));
-              }).ok());
-  const GridCorrection lookup(grid);
-  const Eigen::MatrixXd queries = random_points(3, 100, 2);
-  for (Eigen::Index i = 0; i < queries.cols(); ++i)
-    EXPECT_NEAR(lookup.evaluate(queries.col(i).data()), value(queries.col(i)), 1e-14);
-}
-
 TEST(GridCorrection, ClampsInfinitiesAndTakesNanAsTheLowerEdge) {
   const VoxelGrid grid = uneven_grid(1, 5, 3);
   const GridCorrection lookup(grid);

@@ -227,6 +227,18 @@ TEST_F(ReportVerb, AnOffsetOfForceAndSurfaceChangesNoFigure) {
   }
 }
 
+TEST_F(ReportVerb, EveryFigureCanBeDrawnAgainFromItsFolder) {
+  for (const char* name : {"speed_error", "worst_stretch", "error_by_force"}) {
+    const std::string svg = out() + "/figures/" + name + ".svg";
+    const std::string before = test::read_text(svg);
+    fs::remove(svg);
+    const auto drawn =
+        test::run_program({"sh", "-c", "cd '" + out() + "/figures' && LC_ALL=C gnuplot -d " + name + ".gp"});
+    EXPECT_EQ(drawn.exit_code, 0) << drawn.err;
+    EXPECT_TRUE(test::read_text(svg) == before) << name;
+  }
+}
+
 TEST_F(ReportVerb, AFailureIsOneErrorAndLeavesNoFiles) {
   const std::string bad = folder_->with_file("bad.csv", "time_s,position_m\n0,0\n");
   const std::string copy = folder_->with_file("copy.csv", test::read_text(recording(1)));
