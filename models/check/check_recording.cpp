@@ -8,7 +8,7 @@
 #include "engine/base/statistics.h"
 #include "engine/base/text.h"
 #include "engine/recording/recording.h"
-#include "engine/tick/sensor_identification.h"
+#include "engine/tick/motion_estimator.h"
 
 namespace palpate {
 namespace {

@@ -91,7 +91,6 @@ Result<FittedCorrection> fit_voxel(const MethodTask& task, const FitControl& con
 
 const Method kVoxelMethod{
     .name = "voxel",
-    .label = "voxel",
     .colour = 0x56B4E9,
     .takes = kTakesGrid | kTakesKernel,
     .base = &kDirectMethod,

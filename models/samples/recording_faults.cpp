@@ -1,4 +1,4 @@
-#include "models/samples/recording_faults.h"
+#include "models/samples/samples.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "engine/base/statistics.h"
-#include "engine/tick/sensor_identification.h"
+#include "engine/tick/motion_estimator.h"
 
 namespace palpate {
 namespace {

@@ -141,24 +141,6 @@ TEST_F(ReplayVerb, FiguresFollowFromTheForcesFile) {
   }
 }
 
-TEST_F(ReplayVerb, TableHasOneRowPerModelUnderItsUnits) {
-  const std::regex narrow("MODEL +RMS mN +WITHIN JND % +P99 JND +MAX JND +TICK ns");
-  const std::regex wide("MODEL +RMS mN +MAX mN .*TICK P99 ns .*SURFACE mm .*ALIGNED RMS mN .*BOUND JND");
-  for (const bool all : {false, true}) {
-    const auto ran =
-        run({models_[0], models_[5]}, all ? std::vector<std::string>{"--all"} : std::vector<std::string>{});
-    ASSERT_EQ(ran.exit_code, 0) << ran.err;
-    std::istringstream lines(ran.out);
-    std::vector<std::string> rows;
-    for (std::string line; std::getline(lines, line);) rows.push_back(line);
-    ASSERT_GE(rows.size(), 4u) << ran.out;  // a note about the surface may follow
-    EXPECT_TRUE(test::has_parts(rows[0], {"3000 samples"}));
-    EXPECT_TRUE(std::regex_match(rows[1], all ? wide : narrow)) << rows[1];
-    EXPECT_EQ(rows[1].size(), rows[2].size());
-    EXPECT_EQ(rows[1].size(), rows[3].size());
-  }
-}
-
 // Replays the training recording with positions moved by 0.3 mm.
 TEST_F(ReplayVerb, GivesEveryErrorAsRecordedAndWithTheSurfaceMoved) {
   Recording recording = test::example_recording(3000, 1000.0, 30e-6);
