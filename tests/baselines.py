@@ -29,13 +29,15 @@ def jnd(force):
 
 
 class Recording:
-    """Time, position from the surface of the model, and force of one file, and which samples count, as in `palpate replay`."""
+    """Time, position from the surface of the model, and force from that of free air, and which samples count, all as in
+    `palpate replay`."""
 
-    def __init__(self, path, surface_m=0.0):
+    def __init__(self, path, surface_m=0.0, force_zero_N=0.0):
         with open(path, newline="") as file:
             rows = list(csv.DictReader(line for line in file if not line.startswith("#")))
         self.time, self.position, self.force = (
             numpy.array([float(row[name]) for row in rows]) for name in ("time_s", "position_m", "force_N"))
+        self.force -= force_zero_N
         self.recorded_m, self.position = self.position, self.position - surface_m
         self.known = {}  # columns by greatest depth
 

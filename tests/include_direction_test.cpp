@@ -149,7 +149,7 @@ TEST(IncludeDirection, FindsTheFaultOfEachArrow) {
   EXPECT_NE(find_fault("engine/tick", "engine/live/pacer.h", true), "");
   EXPECT_NE(find_fault("engine/live", "models/model/fitted_model.h", true), "");
   EXPECT_NE(find_fault("models/model", "models/linear/lapack.h", true), "");
-  EXPECT_NE(find_fault("models/model", "models/correction/sites.h", true), "");
+  EXPECT_NE(find_fault("models/model", "models/correction/methods.h", true), "");
   EXPECT_NE(find_fault("models/model", "devices/link/device_link.h", true), "");
   EXPECT_NE(find_fault("scenes/report", "scenes/live/live_session.h", true), "");
   EXPECT_NE(find_fault("scenes/study", "scenes/live/live_session.h", true), "");

@@ -87,7 +87,10 @@ class Set:
         run(palpate, "fit", "--recording", *train, "--method", "trend", "--out", found)
         surface_m = json.loads(found.read_text())["features"][0].get("surface_position_m", 0.0)
         self.after = [next((path for path in train if path.stem == AFTER.get(test.stem)), None) for test in tests]
-        self.train, self.tests = ([baselines.Recording(path, surface_m) for path in some] for some in (train, tests))
+        zeros_N = {one["file"]: one["force_zero_N"] for one in
+                   json.loads(run(palpate, "check", *train, *tests, "--json"))["recordings"]}
+        self.train, self.tests = ([baselines.Recording(path, surface_m, zeros_N[str(path)]) for path in some]
+                                  for some in (train, tests))
         self.refuse_leaks()
         self.deepest_m = max(one.position.max() for one in self.train)
         self.largest_N = max(abs(one.force).max() for one in self.train)
@@ -364,6 +367,18 @@ def hard(kinds, results, models):
         yield f"| {what} | " + " | ".join(value(known[model]) if known[model] else "" for model in models) + " |"
 
 
+def beyond_data(kinds, results, models):
+    """What a loop needs and a table of shares does not show, of OURS and of the standard models."""
+    every = [one for sets in kinds.values() for one in sets]
+    known = {model: [results[one.name, model] for one in every if "beyond" in results[one.name, model]]
+             for model in (OURS, *baselines.KINDS) if model in models}
+    if len(known) > 1 and all(known.values()):
+        yield ("Pressed half as deep again and three times as fast as in the training, the largest force over that of the training "
+               "in the worst set: " + ", ".join(f"{model} {max(one['beyond'] for one in some):.1f}" for model, some in known.items())
+               + ". One force takes, in the median of the sets: "
+               + ", ".join(f"{model} {median([one['ns'] for one in some]):.0f} ns" for model, some in known.items()) + ".")
+
+
 def bounds(kinds, results):
     for kind, sets in kinds.items():
         held = by_rig(sets, results, OURS, lambda test: test["held"])
@@ -446,7 +461,7 @@ def main():
         summary = list(means(kinds, results, options.models))
         beyond = list(hard(kinds, results, options.models))
         sentences = [verdict(kind, sets, results, options.models) for kind, sets in kinds.items() if OURS in options.models]
-        sentences += bounds(kinds, results)
+        sentences += [*bounds(kinds, results), *beyond_data(kinds, results, options.models)]
         print("\n".join([*rows, "", *summary, "", *beyond, "", *sentences]))
         if options.write:
             front_page(options, folder, (rows, summary, beyond, sentences), kinds, results)

@@ -12,7 +12,7 @@
 #include <string>
 
 #include "engine/base/result.h"
-#include "engine/live/force_limiter.h"
+#include "engine/live/device.h"
 
 namespace palpate {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "engine/tick/sensor_identification.h"
+#include "engine/tick/motion_estimator.h"
 
 namespace palpate {
 

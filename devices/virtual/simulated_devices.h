@@ -209,7 +209,7 @@ class MouseDevice : public SimulatedDevice, public ToolInput {
 // A device that repeats the samples of a recording at their own pace. The rendered force has no effect on it; the
 // measured force is the reference for the models.
 // Every row is delivered exactly once and unchanged except for the surface offset, so that the loop gives the same bits
-// as engine/tick/replay.h. After its end, a seek or a new offset the stream restarts: the filters are reset.
+// as engine/tick/haptics_tick.h. After its end, a seek or a new offset the stream restarts: the filters are reset.
 
 inline constexpr double kSlowestReplay = 0.05, kFastestReplay = 10.0;
 

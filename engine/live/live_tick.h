@@ -13,7 +13,6 @@
 
 #include "engine/live/device.h"
 #include "engine/live/force_guard.h"
-#include "engine/live/force_limiter.h"
 #include "engine/live/handover.h"
 #include "engine/tick/haptics_tick.h"
 #include "engine/tick/jnd.h"

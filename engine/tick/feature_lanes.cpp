@@ -1,4 +1,4 @@
-#include "engine/tick/feature_lanes.h"
+#include "engine/tick/features.h"
 
 #include <algorithm>
 #include <cassert>

@@ -8,7 +8,7 @@
 #include "engine/base/statistics.h"
 #include "engine/base/text.h"
 #include "engine/recording/recording.h"
-#include "engine/tick/sensor_identification.h"
+#include "engine/tick/motion_estimator.h"
 
 namespace palpate {
 namespace {
@@ -289,7 +289,7 @@ class Checker {
       add("surface_offset", Severity::note, surface_.offset_m,
           words("the force begins at %+.3g mm (+- %.2g, %s), not at 0", 1e3 * surface_.offset_m,
                 1e3 * surface_.standard_error_m, kOnsetLaw),
-          "a model fitted to this recording has its surface there; to test another model, move the surface: " +
+          "a model fitted to this recording has its surface there; to make this 0: " +
               correction());
     }
     if (!surface_.identified()) check_outside();

@@ -10,7 +10,7 @@
 
 #include "engine/base/parallel.h"
 #include "engine/base/result.h"
-#include "models/correction/sites.h"
+#include "models/correction/methods.h"
 #include "models/linear/lapack.h"
 #include "models/model/correction.h"
 
@@ -91,7 +91,7 @@ FittedCorrection solve_weights(const Sites& sites, const Eigen::MatrixXd& centre
 // The limit of the number of sites; more would take over 4 GiB and minutes.
 inline constexpr Eigen::Index kMostDirectSites = 20000;
 
-// With every site as a centre: the projected system (projected_kernel.h) is solved by a Cholesky factorisation. The
+// With every site as a centre: the projected system is solved by a Cholesky factorisation. The
 // paper inverts the saddle matrix of eq. 4 by truncated singular values, which takes a hundred times as long and has
 // the same purpose (models/fit/fit.h). With smoothing 0 the function interpolates as closely as the smallest
 // smoothing allows at which the matrix can be factorised. Errors: too many sites; no factorisation; interrupted,

@@ -51,7 +51,6 @@ Result<FittedCorrection> fit_greedy(const MethodTask& task, const FitControl& co
 
 const Method kGreedyMethod{
     .name = "greedy",
-    .label = "greedy",
     .colour = 0xD55E00,
     .takes = kTakesCentres | kTakesCandidates | kTakesKernel | kTakesSeed,
     .expected_seconds = 0.25,

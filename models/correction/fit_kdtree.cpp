@@ -168,7 +168,6 @@ Result<FittedCorrection> fit_kdtree(const MethodTask& task, const FitControl& co
 
 const Method kKdTreeMethod{
     .name = "kdtree",
-    .label = "kD-tree",
     .colour = 0x0072B2,
     .takes = kTakesCentres | kTakesKernel,
     .expected_seconds = 0.11,

@@ -65,7 +65,7 @@ Result<FittedCorrection> fit_voxel(const MethodTask& task, const FitControl& con
   const auto d = static_cast<std::size_t>(sites.dimension());
   const std::vector<int> sizes = task.grid.empty() ? default_grid(d) : task.grid;
   if (sizes.size() != d) {
-    return Error{"the grid has " + std::to_string(sizes.size()) + " sizes, the scene has " + std::to_string(d) +
+    return Error{"the grid has " + std::to_string(sizes.size()) + " sizes, the model has " + std::to_string(d) +
                  " features; give one size per feature, e.g. --grid 25x11x11x11 for four"};
   }
   if (node_count(sizes) > kMaximumGridNodes) {
@@ -91,7 +91,6 @@ Result<FittedCorrection> fit_voxel(const MethodTask& task, const FitControl& con
 
 const Method kVoxelMethod{
     .name = "voxel",
-    .label = "voxel",
     .colour = 0x56B4E9,
     .takes = kTakesGrid | kTakesKernel,
     .base = &kDirectMethod,

@@ -1,15 +1,49 @@
-#include "models/correction/methods.h"
-
-#include <algorithm>
-
 #include "models/correction/algebra.h"
 
+#include <algorithm>
+#include <vector>
+
+#include "models/correction/methods.h"
+
 namespace palpate {
+
+// Direct interpolation: every site is a centre, with the side condition of eq. 3 and the smoothing of the sites.
+// Source: Hoever & Harders (2009), section 3, eqs. 2-8.
+
+const Method kDirectMethod{
+    .name = "direct",
+    .colour = kNeutralColour,
+    .takes = kTakesKernel,
+    .expected_seconds = 3.0,
+    .fit = [](const MethodTask& task, const FitControl& control) { return solve_direct(task.sites, control); },
+};
+
+// The random method: distinct sites drawn without replacement, the first of one permutation. It is the fastest method
+// and the least accurate.
+// Source: Hoever & Harders (2009), section 4.2.1.
+
+namespace {
+
+Result<FittedCorrection> fit_random(const MethodTask& task, const FitControl&) {
+  std::vector<Eigen::Index> order = distinct_sites(task.sites);
+  SplitMix64 random(task.seed);
+  order.resize(draw_first(order, task.centres, random));
+  return fit_centres(task, task.sites.points(Eigen::all, order), "there are no more distinct sites");
+}
+
+}  // namespace
+
+const Method kRandomMethod{
+    .name = "random",
+    .colour = 0xE69F00,
+    .takes = kTakesCentres | kTakesKernel | kTakesSeed,
+    .expected_seconds = 0.1,
+    .fit = fit_random,
+};
 
 // The trend without a correction: the smallest model, and the baseline of every other method.
 const Method kTrendMethod{
     .name = "trend",
-    .label = "trend",
     .colour = 0xCC79A7,
     .expected_seconds = 0.01,
     .fit = [](const MethodTask&, const FitControl&) -> Result<FittedCorrection> { return FittedCorrection{}; },

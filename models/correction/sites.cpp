@@ -1,4 +1,4 @@
-#include "models/correction/sites.h"
+#include "models/correction/methods.h"
 
 #include <algorithm>
 #include <cmath>

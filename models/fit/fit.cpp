@@ -141,11 +141,7 @@ double share_within_jnd(const PreparedTraining& prepared, const ModelData& data)
 }
 
 MethodTask task_of(const ModelPlan& plan, const Sites& sites, const Eigen::VectorXd& jnd_N, CorrectionPtr base) {
-  MethodTask task{sites, jnd_N, plan.centres, plan.candidates, plan.grid, plan.seed, std::move(base)};
-  // The number of features is not known before they are selected: those without a size have the last one.
-  if (plan.features == FeatureChoice::automatic && !plan.grid.empty())
-    task.grid.resize(static_cast<std::size_t>(sites.dimension()), plan.grid.back());
-  return task;
+  return {sites, jnd_N, plan.centres, plan.candidates, plan.grid, plan.seed, std::move(base)};
 }
 
 // The correction without a fold; none if no other fold has rows.

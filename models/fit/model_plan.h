@@ -17,7 +17,6 @@
 
 #include "engine/base/result.h"
 #include "models/correction/methods.h"
-#include "models/correction/sites.h"
 #include "models/model/kernels.h"
 #include "models/trend/trend_estimator.h"
 

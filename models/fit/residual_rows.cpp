@@ -1,4 +1,4 @@
-#include "models/fit/residual_rows.h"
+#include "models/fit/fit.h"
 
 #include <algorithm>
 #include <array>
@@ -11,7 +11,7 @@
 #include "engine/base/parallel.h"
 #include "engine/base/random_stream.h"
 #include "engine/base/statistics.h"
-#include "engine/tick/sensor_identification.h"
+#include "engine/tick/motion_estimator.h"
 #include "models/correction/algebra.h"
 #include "models/linear/lapack.h"
 #include "models/model/correction.h"

@@ -12,7 +12,7 @@
 #include "models/check/check_recording.h"
 #include "models/fit/fit.h"
 #include "models/library/c_interface.h"
-#include "models/samples/recording_faults.h"
+#include "models/samples/samples.h"
 
 namespace palpate::library {
 namespace {

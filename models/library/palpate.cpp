@@ -18,11 +18,9 @@
 #include "engine/json/json_fields.h"
 #include "engine/live/device.h"
 #include "engine/live/force_guard.h"
-#include "engine/live/force_limiter.h"
 #include "engine/live/live_tick.h"
 #include "engine/tick/haptics_tick.h"
-#include "engine/tick/replay.h"
-#include "engine/tick/sensor_identification.h"
+#include "engine/tick/motion_estimator.h"
 #include "models/library/c_interface.h"
 #include "models/model/file/model_io.h"
 

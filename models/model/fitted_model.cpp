@@ -75,7 +75,7 @@ double Trend::at(const double* features, const TrendInputs& inputs) const noexce
 namespace {
 
 // Radii in the normalised feature space, where a feature's spread is about 1. The inner one is the smallest of those
-// that a fit selects from (models/fit/residual_rows.h). On held-out recordings of six materials a correction is
+// that a fit selects from. On held-out recordings of six materials a correction is
 // better than the trend up to about 0.2 from the data and worse beyond.
 constexpr double kInnerRadius = 0.08;
 constexpr double kOuterToInner = 3.0;

@@ -183,7 +183,7 @@ struct Provenance {
 //   bound(x) = floor + per_force |f(x)| + per_distance max(0, distance(x) - inner radius) >= |model - material|
 // distance: to the nearest training data in the normalised feature space. The coefficients are fitted
 // to errors of whole recordings or presses that were left out, and scaled by a quantile over these
-// (models/fit/residual_rows.h). Sources: Vovk (2015), "Cross-conformal predictors"; Lei, G'Sell, Rinaldo, Tibshirani &
+// (models/fit/fit.h). Sources: Vovk (2015), "Cross-conformal predictors"; Lei, G'Sell, Rinaldo, Tibshirani &
 // Wasserman (2018), section 5.2 (locally weighted).
 struct ErrorBound {
   double floor_N = 0.0, per_force = 0.0, per_distance_N = 0.0;

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "engine/base/statistics.h"
-#include "engine/tick/sensor_identification.h"
+#include "engine/tick/motion_estimator.h"
 #include "models/linear/lapack.h"
 
 namespace palpate {

@@ -1,4 +1,4 @@
-#include "models/samples/recording_faults.h"
+#include "models/samples/samples.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "engine/base/statistics.h"
-#include "engine/tick/sensor_identification.h"
+#include "engine/tick/motion_estimator.h"
 
 namespace palpate {
 namespace {
@@ -15,7 +15,9 @@ namespace {
 using Rows = std::vector<RecordingRow>;
 using Column = double RecordingRow::*;
 
+// Fewer are single events, unless one of them is larger than this share of the range: a lost sample, a saturated word.
 constexpr std::size_t kLeastDropouts = 3;
+constexpr double kLargeShare = 0.25;
 constexpr std::size_t kLeastUpdates = 50;
 
 // Consecutive rows with one value.
@@ -69,6 +71,9 @@ std::vector<Run> dropouts(const Rows& rows, Column column, double noise, bool is
   of_rows.resize(rows.size(), 0.0);
   // Six times the noise is exceeded by one row in 1e9 of white noise.
   const double least = 6.0 * std::max(noise, quantile_of(std::move(of_rows), 0.9));
+  const auto [low, high] = std::ranges::minmax(rows, {}, column);
+  const double large = kLargeShare * (high.*column - low.*column);
+  bool certain = false;
   std::vector<std::pair<Run, bool>> candidates;  // and whether it is physically impossible
   std::map<double, std::size_t> values;
   for (std::size_t i = 2; i + 2 < runs.size(); ++i) {
@@ -81,6 +86,7 @@ std::vector<Run> dropouts(const Rows& rows, Column column, double noise, bool is
     const double half_s = 0.5 * (rows[run.end].time_s - rows[run.begin - 1].time_s);
     // A hand reaches some 50 m/s^2, a testing machine less.
     const bool impossible = is_position ? 2.0 * size > 100.0 * half_s * half_s : half_s < 0.01;
+    certain = certain || (impossible && size > large);
     candidates.emplace_back(run, impossible);
     ++values[run.value];
   }
@@ -92,7 +98,7 @@ std::vector<Run> dropouts(const Rows& rows, Column column, double noise, bool is
     count += run.end - run.begin;
   }
   const bool few = static_cast<double>(count) <= 0.1 * static_cast<double>(rows.size());
-  return found.size() >= kLeastDropouts && few ? found : std::vector<Run>{};
+  return (found.size() >= kLeastDropouts || certain) && few ? found : std::vector<Run>{};
 }
 
 // Marks the rows of the runs; returns their number.

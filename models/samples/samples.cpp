@@ -7,7 +7,7 @@
 #include <tuple>
 
 #include "engine/base/statistics.h"
-#include "engine/tick/sensor_identification.h"
+#include "engine/tick/motion_estimator.h"
 
 namespace palpate {
 std::vector<Sample> thinned_rows(const Recording& recording, std::size_t most) {

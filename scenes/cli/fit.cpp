@@ -13,7 +13,7 @@
 
 #include "engine/base/atomic_file.h"
 #include "engine/base/text.h"
-#include "engine/tick/replay.h"
+#include "engine/tick/haptics_tick.h"
 #include "models/check/check_recording.h"
 #include "models/fit/fit.h"
 #include "models/model/file/model_io.h"
@@ -82,8 +82,7 @@ std::string training_contradiction(const std::vector<CheckedFile>& files, const 
 // trend with it and without it.
 void print_gains(const std::vector<PartGain>& gains) {
   if (gains.empty()) return;
-  std::vector<std::vector<std::string>> rows{
-      {"FEATURE OF THE TREND", "USED", "ERROR WITH IT [JND]", "WITHOUT"}};
+  std::vector<std::vector<std::string>> rows{{"FEATURE OF THE TREND", "USED", "ERROR WITH IT [JND]", "WITHOUT"}};
   for (const PartGain& one : gains)
     rows.push_back({one.name, one.taken ? "yes" : "no", fixed(one.error_with, 3), fixed(one.error_without, 3)});
   print_table(rows, true);

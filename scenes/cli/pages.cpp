@@ -88,6 +88,40 @@ Status run_report(Arguments arguments) {
   return {};
 }
 
+// A report for each recording of a folder, and one table of recordings and models.
+Status report_each(const Arguments& arguments) {
+  const auto job = [&](const std::string& recording, const std::string& result) {
+    Arguments one = arguments;
+    one.train = {recording};
+    one.request.out = result;
+    one.request.force = true;
+    return run_report(one);
+  };
+  const auto row = [](const std::string& result) -> FolderRun::Row {
+    const auto text = read_plain_file(result + "/report.json", "the results");
+    const auto report = nlohmann::ordered_json::parse(text ? *text : "", nullptr, false);
+    if (report.is_discarded()) return {};
+    FolderRun::Row cells = {{"recommended", report["timings"]["recommended"]}};
+    for (const auto& model : report["tables"]["models"])
+      cells.emplace_back(model["model"].get<std::string>(), model["within_jnd"]);
+    return cells;
+  };
+  return run_folder({"reporting", command_line(arguments), arguments.train.front(), arguments.request.out, "",
+                     "reports", arguments.request.force, job, row});
+}
+
+// With one folder and no test each recording gets its own report; else the recordings of a folder are one set.
+Status run_report_or_each(Arguments arguments) {
+  if (arguments.train.size() == 1 && arguments.test.empty() && is_folder(arguments.train.front()))
+    return report_each(arguments);
+  for (std::vector<std::string>* paths : {&arguments.train, &arguments.test}) {
+    auto all = recordings_in(*paths);
+    if (!all) return all.error();
+    *paths = std::move(*all);
+  }
+  return run_report(std::move(arguments));
+}
+
 Status run_paper(PaperRequest request, bool json) {
   request.origin = "palpate paper --out " + shell_word(request.out) + (request.quick ? " --quick" : "") +
                    " · palpate " PALPATE_VERSION;
@@ -147,7 +181,11 @@ void add_report(CLI::App& app, Verbs& verbs) {
   CLI::App* verb =
       app.add_subcommand("report", "Fit every method, measure speed and error, and write a page of results");
   const auto arguments = std::make_shared<Arguments>();
-  verb->add_option("--train", arguments->train, "Training recordings (CSV) [virtual silicone]")->type_name("CSV");
+  verb->add_option(
+          "--train", arguments->train,
+          "Training recordings (CSV) or folders of them [virtual silicone]. With one folder and no --test each "
+          "recording gets its own report, in parallel; the same command continues a run")
+      ->type_name("CSV|FOLDER");
   verb->add_option(
           "--test", arguments->test,
           "Test recordings (CSV) [cross-validation over the training recordings; the last 40 % of a single one]")
@@ -165,7 +203,7 @@ void add_report(CLI::App& app, Verbs& verbs) {
   verb->add_flag("--quick", arguments->request.quick, "Fit the paper's methods and the default only, with 100 centres");
   verb->add_flag("--json", arguments->json, "Print report.json, which is also in the folder");
   verb->add_flag("--force", arguments->request.force, "Replace an earlier report");
-  verbs.emplace_back(verb, [arguments] { return run_report(*arguments); });
+  verbs.emplace_back(verb, [arguments] { return run_report_or_each(*arguments); });
 }
 
 void add_paper(CLI::App& app, Verbs& verbs) {

@@ -10,7 +10,7 @@
 #include "engine/base/atomic_file.h"
 #include "engine/base/text.h"
 #include "engine/tick/haptics_tick.h"
-#include "models/samples/recording_faults.h"
+#include "models/samples/samples.h"
 #include "scenes/cli/verbs.h"
 #include "scenes/evaluation/evaluate.h"
 #include "scenes/plot/plot.h"

@@ -23,7 +23,7 @@
 
 #include "engine/base/parallel.h"
 #include "engine/base/result.h"
-#include "engine/tick/replay.h"
+#include "engine/tick/haptics_tick.h"
 #include "models/samples/samples.h"
 #include "models/samples/selection.h"
 #include "scenes/evaluation/model_errors.h"
@@ -86,7 +86,7 @@ struct EvaluationRequest {
   ReplayVisitor also;
   // Errors count from this time of the recording on. Earlier rows are replayed because the features have memory.
   double counted_from_s = -std::numeric_limits<double>::infinity();
-  const Recording* after = nullptr;  // the recording that this one continues (engine/tick/replay.h)
+  const Recording* after = nullptr;  // the recording that this one continues (engine/tick/haptics_tick.h)
   double force_zero_N = 0.0;         // subtracted from every measured force, also for `also`: that of free air
   bool move_surface = true;          // false: the figures with the surface moved equal those as recorded
   bool move_beginning = false;       // true: also those with `beginning_m`, where it is not 0

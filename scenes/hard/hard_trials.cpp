@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "engine/base/random_stream.h"
-#include "engine/tick/replay.h"
+#include "engine/tick/haptics_tick.h"
 #include "scenes/hard/hard.h"
 
 namespace palpate {

@@ -113,7 +113,7 @@ constexpr Line kLines[] = {{"10 kHz, no delay", 0.0, 1e-4},  {"1 kHz, no delay",
                            {"1 kHz, 3 ms late", 3e-3, 1e-3}, {"1 kHz, 10 ms late", 10e-3, 1e-3},
                            {"100 Hz, no delay", 0.0, 10e-3}, {"100 Hz, 10 ms late", 10e-3, 10e-3}};
 
-// A finger in light contact, and a clenched fist (closed_loop.h).
+// A finger in light contact, and a clenched fist (hard.h).
 void add_hands(std::vector<HardCase>& cases, const std::shared_ptr<Trainings>& trainings, const std::string& material,
                const Line& line) {
   for (const auto& [hand, grip] :

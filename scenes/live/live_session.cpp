@@ -9,7 +9,7 @@
 #include "engine/base/text.h"
 #include "engine/live/pacer.h"
 #include "models/model/fitted_model.h"
-#include "models/samples/recording_faults.h"
+#include "models/samples/samples.h"
 #include "scenes/evaluation/evaluate.h"
 #include "scenes/live/session_recorder.h"
 #include "scenes/material/rig.h"

@@ -1,4 +1,4 @@
-#include "scenes/report/contents.h"
+#include "scenes/report/report.h"
 
 #include <algorithm>
 #include <cmath>

@@ -140,7 +140,6 @@ class Measurement {
       const int size = result.model->centre_count();
       result.least_size = result.fits.empty() ? size : std::min(result.least_size, size);
       result.size = std::max(result.size, size);
-      result.rank = one->rank;
       result.fits.push_back(result.model);
     }
     return {};

@@ -4,13 +4,13 @@
 #include <optional>
 #include <utility>
 
-#include "engine/tick/sensor_identification.h"
+#include "engine/tick/motion_estimator.h"
 #include "models/correction/methods.h"
 #include "models/fit/fit.h"
 #include "models/model/kernels.h"
 #include "scenes/evaluation/evaluate.h"
+#include "scenes/report/measure.h"
 #include "scenes/report/paper.h"
-#include "scenes/report/recordings.h"
 #include "scenes/scene/scene.h"
 #include "scenes/study/study_analysis.h"
 

@@ -1,4 +1,4 @@
-#include "scenes/report/recordings.h"
+#include "scenes/report/measure.h"
 
 #include <algorithm>
 #include <iterator>

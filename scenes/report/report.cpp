@@ -15,7 +15,6 @@
 #include "engine/base/whole_file.h"
 #include "models/model/file/model_io.h"
 #include "scenes/evaluation/model_errors.h"
-#include "scenes/report/contents.h"
 #include "scenes/scene/scene.h"
 
 namespace palpate {

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "engine/base/text.h"
-#include "engine/tick/replay.h"
+#include "engine/tick/haptics_tick.h"
 #include "scenes/evaluation/model_errors.h"
 #include "scenes/material/rig.h"
 #include "scenes/scene/scene.h"

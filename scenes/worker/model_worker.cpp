@@ -17,7 +17,7 @@
 #include "models/correction/methods.h"
 #include "models/linear/lapack.h"
 #include "models/model/file/model_io.h"
-#include "models/samples/recording_faults.h"
+#include "models/samples/samples.h"
 #include "scenes/material/rig.h"
 
 namespace palpate {

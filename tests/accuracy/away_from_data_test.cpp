@@ -7,7 +7,7 @@
 #include <cmath>
 #include <iostream>
 
-#include "engine/tick/replay.h"
+#include "engine/tick/haptics_tick.h"
 #include "scenes/hard/hard.h"
 #include "scenes/material/material.h"
 #include "tests/support/fitting.h"

@@ -10,7 +10,7 @@
 #include <string>
 
 #include "engine/tick/features.h"
-#include "models/correction/sites.h"
+#include "models/correction/methods.h"
 #include "models/fit/fit.h"
 #include "models/model/correction.h"
 

@@ -12,8 +12,6 @@
 // tick/       one sample of a replay, whole and its motion alone
 // program/    `palpate fit` from the command line to the model file
 // size/       fits against the number of sites, 1,000 to 1,000,000
-// feature/    a tick of the feature filter, one kind of feature at a time
-// dimension/  fits and evaluation against the number of features, 1 to 8
 //
 // Prints the tables of tests/bench/README.md at the end. Figures are medians over
 // repetitions: processor time of queries, and wall time of fits (which use all

@@ -66,14 +66,6 @@ constexpr Column kSizeColumns[] = {
     {"greedy-100, 100 candidates", "size/greedy-100_of_100", true},
 };
 
-constexpr Column kDimensionColumns[] = {
-    {"random-100 fit", "dimension/random-100", false},
-    {"greedy-100 fit", "dimension/greedy-100_of_100", false},
-    {"grid of 10 a side from all sites", "dimension/grid_10_a_side", true},
-    {"one evaluation, 100 centres", "dimension/evaluate_rbf", false},
-    {"one grid look-up", "dimension/evaluate_grid", false},
-};
-
 std::string thousands(long value) { return with_thousands(std::to_string(value)); }
 
 const BenchRow* find(const BenchRows& rows, const std::string& name) {
@@ -150,12 +142,6 @@ void print_against(const BenchRows& rows, const std::string& title, const char* 
   }
 }
 
-void print_features(const BenchRows& rows) {
-  Table table("Features", {"feature", "one tick"});
-  for (const auto& [name, row] : rows)
-    if (name.starts_with("feature/")) table.add({name.substr(8), duration(row.seconds)});
-}
-
 }  // namespace
 
 std::string duration(double seconds) {
@@ -174,8 +160,6 @@ void print_tables(const BenchRows& rows) {
                kScalarRatios);
   print_ratios(rows, Table("Whole beside bare", {"work", "whole", "bare", "ratio", "goal"}), kWholeRatios);
   print_against(rows, "Cost over N", "sites, 4-D", kSizeColumns);
-  print_against(rows, "Cost over dimension", "features", kDimensionColumns);
-  print_features(rows);
   std::fflush(stdout);
 }
 

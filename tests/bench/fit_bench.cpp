@@ -1,4 +1,4 @@
-// Fits at the paper's number of sites, against N, and against the dimension.
+// Fits at the paper's number of sites and against N.
 #include <benchmark/benchmark.h>
 
 #include <chrono>
@@ -100,46 +100,6 @@ void against_size(const std::string& name, const Fit& fit) {
     add_made("size/" + name + "/" + std::to_string(count), count < 50000 ? 3 : 1, fit, 4, count);
 }
 
-// The cost over the dimension, as in figures 2 and 8 of the paper.
-void against_dimension(const std::string& name, const Fit& fit) {
-  for (int d = 1; d <= static_cast<int>(kMaxFeatures); ++d)
-    add_made("dimension/" + name + "/" + std::to_string(d), 3, fit, d, kPaperSites);
-}
-
-// Grids with ten nodes a side, as in the paper, with all sites as centres. Seven and
-// eight dimensions are left out: they would have 1e7 and 1e8 nodes.
-void grid_against_dimension() {
-  for (int d = 1; d <= 6; ++d)
-    add_fit("dimension/grid_10_a_side/" + std::to_string(d), 1, [d](benchmark::State& state) {
-      const Sites sites = made_sites(d, kPaperSites);
-      const RbfFunction function{KernelKind::cubic, sites.points, sites.target_N, Eigen::VectorXd::Ones(1 + d)};
-      TimedFit timed([&](const Sites& all, const Eigen::VectorXd&) -> Result<RbfFunction> {
-        VoxelGrid grid = even_grid(all, std::vector<int>(static_cast<std::size_t>(d), 10));
-        if (const Status filled = fill(grid, function); !filled) return filled.error();
-        return RbfFunction{};
-      });
-      timed.run(state, sites, sites.target_N);
-    });
-}
-
-void evaluate_rbf_in(benchmark::State& state) {
-  const auto d = static_cast<int>(state.range(0));
-  const Sites sites = made_sites(d, kCentres);
-  const RbfCorrection evaluator({KernelKind::cubic, sites.points, sites.target_N, Eigen::VectorXd::Ones(1 + d)});
-  run_queries(state, sites.points, [&](const double* x) { return evaluator.evaluate(x); });
-}
-
-void evaluate_grid_in(benchmark::State& state) {
-  const auto d = static_cast<int>(state.range(0));
-  const Sites sites = made_sites(d, kCentres);
-  // Nodes a side for a grid of about the size of the second-level cache, or smaller.
-  const int side[] = {1000, 100, 25, 11, 8, 6, 5, 4};
-  VoxelGrid grid = even_grid(sites, std::vector<int>(static_cast<std::size_t>(d), side[d - 1]));
-  (void)fill_grid(grid, [](const Eigen::MatrixXd& p, Eigen::VectorXd& out) { out = p.colwise().sum().transpose(); });
-  const GridCorrection lookup(grid);
-  run_queries(state, sites.points, [&](const double* x) { return lookup.evaluate(x); });
-}
-
 const int registered = [] {
   at_paper_size("random-100", random_fit, 7);
   at_paper_size("kdtree-100", kdtree_fit, 7);
@@ -151,16 +111,6 @@ const int registered = [] {
   against_size("random-100", random_fit);
   against_size("kdtree-100", kdtree_fit);
   against_size("greedy-100_of_100", greedy_fit(100));
-  against_dimension("random-100", random_fit);
-  against_dimension("greedy-100_of_100", greedy_fit(100));
-  grid_against_dimension();
-  for (const auto& [name, function] :
-       {std::pair{"dimension/evaluate_rbf", &evaluate_rbf_in}, std::pair{"dimension/evaluate_grid", &evaluate_grid_in}})
-    benchmark::RegisterBenchmark(name, function)
-        ->DenseRange(1, static_cast<int>(kMaxFeatures))
-        ->Repetitions(5)
-        ->MinTime(0.02)
-        ->ReportAggregatesOnly();
   return 0;
 }();
 

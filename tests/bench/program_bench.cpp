@@ -15,7 +15,7 @@
 
 #include "engine/recording/recording.h"
 #include "engine/tick/haptics_tick.h"
-#include "engine/tick/sensor_identification.h"
+#include "engine/tick/motion_estimator.h"
 #include "models/model/file/model_io.h"
 #include "tests/support/fitting.h"
 #include "tests/support/temporary_folder.h"

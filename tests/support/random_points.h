@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "models/correction/sites.h"
+#include "models/correction/methods.h"
 #include "models/model/correction.h"
 #include "models/model/kernels.h"
 

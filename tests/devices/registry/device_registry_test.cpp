@@ -171,19 +171,6 @@ TEST(SpaceMouse, MovesAtEveryTickBetweenReports) {
   EXPECT_EQ(standing, 0);
 }
 
-TEST(SpaceMouse, KeepsItsTargetWhileSilentAndIsAtZeroNearZero) {
-  Moved moved;
-  moved.report(200, 1.0);
-  EXPECT_NEAR(moved.tool.target_m(), -0.006 + 200.0 / 17500.0, 1e-12);
-  moved.report(5, 61.0);
-  EXPECT_NEAR(moved.tool.target_m(), -0.006, 1e-12) << "not touched";
-  EXPECT_FALSE(moved.tool.idle(80.0));
-  moved.report(-5, 80.0);
-  EXPECT_TRUE(moved.tool.idle(82.0)) << "near zero is no input";
-  moved.report(5000, 83.0);
-  EXPECT_NEAR(moved.tool.target_m(), -0.006, 1e-12) << "no deflection is that large";
-}
-
 // Reads `device` about every millisecond, in real time.
 template <typename Done>
 bool read_until(Device& device, DeviceSample& sample, Done done) {

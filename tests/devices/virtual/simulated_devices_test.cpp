@@ -260,31 +260,5 @@ TEST(ReplayDevice, SeeksAlsoWhilePaused) {
   EXPECT_NEAR(device.playhead_s(), device.duration_s(), 1e-12);
 }
 
-TEST(ReplayDevice, GoesByOneSampleAndPauses) {
-  ReplayDevice device(ramp(1000, 1000.0));
-  Player player{device};
-  const double seen_N = player.play(10).back().measured_N;
-  device.step(1);
-  EXPECT_TRUE(device.paused());
-  std::vector<DeviceSample> samples = player.play(5);
-  ASSERT_EQ(samples.size(), 1u);
-  EXPECT_NEAR(samples[0].measured_N, seen_N + 1e-3, 1e-12);
-  EXPECT_FALSE(samples[0].restart) << "the filters go on";
-  device.step(3);
-  samples = player.play(5);
-  ASSERT_EQ(samples.size(), 3u) << "none is left out";
-  device.step(-1);
-  samples = player.play(5);
-  ASSERT_EQ(samples.size(), 1u);
-  EXPECT_NEAR(samples[0].measured_N, seen_N + 3e-3, 1e-12);
-  EXPECT_TRUE(samples[0].restart) << "time does not run backwards in a filter";
-  device.step(-100000);
-  EXPECT_EQ(player.play(5).back().measured_N, 0.0) << "the first one";
-  device.seek(0.998);
-  player.play(5);
-  device.step(100000);
-  EXPECT_EQ(player.play(5).back().measured_N, 0.999) << "the last one";
-}
-
 }  // namespace
 }  // namespace palpate

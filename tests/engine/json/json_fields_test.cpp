@@ -84,20 +84,5 @@ TEST(JsonFields, CollectsAllErrorsEachOnce) {
        "x.json:3:30: g: found 3", "one, two", "x.json:3:21:", "unknown field", "d, e", "; "}));
 }
 
-TEST(JsonFields, TellsOfTwentyErrorsAndCountsTheRest) {
-  Json object = Json::object();
-  for (int i = 0; i < 100; ++i) object[std::to_string(i) + "\x1b"] = i;
-  const std::string text = object.dump();
-  JsonFields fields(text, kPath, "");
-  const JsonNode top{&object, ""};
-  EXPECT_FALSE(fields.error().has_value());
-  fields.optional_member(top, "known");
-  fields.refuse_unknown(top);
-  const std::string message = fields.error()->message;
-  EXPECT_EQ(std::count(message.begin(), message.end(), '\n'), 20);
-  EXPECT_TRUE(test::has_parts(message.substr(message.rfind('\n') + 1), {"x.json", " 80 "}));
-  EXPECT_EQ(message.find('\x1b'), std::string::npos) << "names from the file are made printable";
-}
-
 }  // namespace
 }  // namespace palpate

@@ -1,4 +1,4 @@
-#include "engine/live/force_limiter.h"
+#include "engine/live/device.h"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "engine/base/random_stream.h"
-#include "engine/live/device.h"
 #include "engine/live/force_guard.h"
 #include "tests/support/message_parts.h"
 

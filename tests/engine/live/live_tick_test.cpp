@@ -9,7 +9,7 @@
 
 #include "devices/registry/device_registry.h"
 #include "devices/virtual/simulated_devices.h"
-#include "engine/tick/replay.h"
+#include "engine/tick/haptics_tick.h"
 #include "tests/support/example_model.h"
 #include "tests/support/live_doubles.h"
 #include "tests/support/rt_guard.h"
@@ -475,7 +475,7 @@ TEST(LiveTickSafety, ADeviceThatHasGivenNothingIsNotDriven) {
     ASSERT_NE(snapshot.faults & loop_fault::kStaleSample, 0u);
   }
   device.silent = false;
-  rig.run(150);
+  rig.run(1000);  // the scale rises with a time constant of 50 ms
   EXPECT_NEAR(device.force_N(), 5.0, 1e-9);
   device.silent = true;
   rig.run(25);

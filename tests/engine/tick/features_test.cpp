@@ -1,17 +1,24 @@
-// Features against closed forms. Motion estimates are given exactly, so that only the filters are tested.
 #include "engine/tick/features.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
+#include <string>
 #include <utility>
+#include <vector>
 
+#include "engine/tick/haptics_tick.h"
+#include "models/model/fitted_model.h"
+#include "tests/support/example_model.h"
 #include "tests/support/feature_specs.h"
 
 namespace palpate {
 namespace {
+
+// Features against closed forms. Motion estimates are given exactly, so that only the filters are tested.
 
 using namespace test;
 
@@ -179,6 +186,252 @@ TEST(Features, AnHourAtRestLeavesZero) {
   }
   EXPECT_EQ(vector.values[0], 0.0);
   EXPECT_EQ(vector.values[1], 0.0);
+}
+
+// Compares parts computed four at a time with the equations of features.h.
+
+double by_lane(double x, std::size_t lane) {
+  V4 lanes{-1.0, -2.0, 3.0, 0.5};
+  lanes[lane] = x;
+  to_exponential(lanes);
+  return lanes[lane];
+}
+
+// The reference, std::exp, is itself accurate to 1 ulp.
+TEST(Exponential, IsGoodToAnUlp) {
+  const double ulp = std::numeric_limits<double>::epsilon();
+  for (double x = -690.0; x < 690.0; x += 0.0371) ASSERT_NEAR(by_lane(x, 1) / std::exp(x), 1.0, 2 * ulp) << x;
+  for (double x = 1e-9; x < 1.0; x *= 1.01) ASSERT_NEAR(by_lane(-x, 2) / std::exp(-x), 1.0, 2 * ulp) << x;
+}
+
+DriveCurve drive_of(std::size_t i) {
+  const double size = static_cast<double>(i + 1);
+  return {4e-3 + 5e-4 * size, {0.3 * size, 0.1, 0.02 * size, 0.05}};
+}
+double time_of(std::size_t i) { return 1e-3 * std::pow(2.5, static_cast<double>(i)); }
+
+// A motion in and out, beyond the reference depth of some drives.
+double depth_at(int i) { return std::max(0.0, 9e-3 * std::sin(0.01 * i)); }
+
+class FeatureLanes : public testing::TestWithParam<std::size_t> {};
+INSTANTIATE_TEST_SUITE_P(Parts, FeatureLanes, testing::Values(1, 2, 3, 4, 5, 13, 64),
+                         [](const auto& instance) { return std::to_string(instance.param); });
+
+TEST_P(FeatureLanes, BranchesFollowTheirEquation) {
+  BranchLanes lanes;
+  std::vector<double> z(GetParam(), 0.0);
+  for (std::size_t i = 0; i < z.size(); ++i) lanes.add(drive_of(i), time_of(i % 13));
+  PartMemory memory{};
+  lanes.advance(0.0, depth_at(0), 0.0, memory);
+  for (int t = 1; t < 1000; ++t) {
+    const double step_s = 1e-3 * (1.0 + 0.5 * std::sin(1.0 * t));
+    lanes.advance(depth_at(t - 1), depth_at(t), step_s, memory);
+    for (std::size_t i = 0; i < z.size(); ++i) {
+      const double keep = by_lane(-step_s / time_of(i % 13), 0);
+      const double gain = time_of(i % 13) * (1.0 - keep) / step_s;
+      z[i] = keep * z[i] + gain * (drive_of(i).at(depth_at(t)) - drive_of(i).at(depth_at(t - 1)));
+      // A thousand steps of two exponentials, each accurate to an ulp.
+      ASSERT_NEAR(sum_of_lanes(memory.value, i, 1), z[i], 1e-12) << i << " at " << t;
+    }
+  }
+}
+
+// Stops in the even lanes, creeping bristles in the odd ones.
+TEST_P(FeatureLanes, BristlesFollowTheirEquations) {
+  constexpr double kStep_s = 1e-3;
+  BristleLanes lanes;
+  PartMemory memory{};
+  V4 force_N[kMaxLaneGroups];
+  std::vector<double> bend(GetParam(), 0.0);
+  const auto creeps = [](std::size_t i) { return i % 2 == 1; };
+  const auto threshold = [&](std::size_t i) { return creeps(i) ? 5e-3 : 1e-4 * static_cast<double>(i + 1); };
+  const auto time = [](std::size_t i) { return 1e-3 * std::pow(10.0, static_cast<double>(i % 5)); };
+  for (std::size_t i = 0; i < bend.size(); ++i) lanes.add(drive_of(i), threshold(i), creeps(i) ? time(i) : 0.0);
+  for (int t = 1; t < 1000; ++t) {
+    lanes.advance(depth_at(t - 1), depth_at(t), kStep_s, memory.value, force_N);
+    for (std::size_t i = 0; i < bend.size(); ++i) {
+      if (creeps(i)) {
+        const auto half = [&](double q) { return q / std::sqrt(1.0 + kStep_s / time(i) * (q / 5e-3) * (q / 5e-3)); };
+        bend[i] = half(half(bend[i]) + depth_at(t) - depth_at(t - 1));
+      } else {
+        // Out of contact a stop relaxes to zero.
+        const double limit_m = depth_at(t) > 0.0 ? threshold(i) : 0.0;
+        bend[i] = std::clamp(bend[i] + depth_at(t) - depth_at(t - 1), -limit_m, limit_m);
+      }
+      // Products of creep are in another order: a difference of some ulps a step, which creep forgets.
+      ASSERT_NEAR(sum_of_lanes(force_N, i, 1), drive_of(i).at(depth_at(t)) * bend[i] / threshold(i),
+                  creeps(i) ? 1e-12 : 1e-15)
+          << i << " at " << t;
+    }
+  }
+}
+
+// The memory of features: relaxation times that depend on depth, and the memory kept in an exchange of models
+// (engine/tick/features.h).
+
+// A complete material. Energy returned in a cycle may have been stored in an earlier one, so the sum over all cycles
+// from rest must be positive.
+TEST(FeatureMemory, TimesThatSlowMakeNoEnergy) {
+  const DriveCurve elastic{5e-3, {0.5, 0.4}};
+  for (const double slowing : {0.0, 3.0, -2.0}) {
+    for (const double duration_s : {0.05, 0.5, 5.0}) {
+      FeatureSpec branches = spectrum({0.01, 0.1, 1.0}, stiffening());
+      branches.slowing = slowing;
+      FeatureFilter filter({branches});
+      double before_N = 0.0;
+      double work = 0.0;
+      constexpr int kSteps = 20000;
+      feed(filter, 0.0, closed_motion_m(0.0));
+      for (int i = 1; i <= 4 * kSteps; ++i) {
+        const double phase = static_cast<double>(i) / kSteps;
+        const double position_m = closed_motion_m(phase);
+        const double force_N = elastic.at(position_m) + feed(filter, duration_s * phase, position_m).values[0];
+        work += 0.5 * (force_N + before_N) * (position_m - closed_motion_m(phase - 1.0 / kSteps));
+        before_N = force_N;
+      }
+      EXPECT_GT(work, 0.0) << slowing << " " << duration_s;
+    }
+  }
+}
+
+// After an exchange of models in mid-press, the memory of equal features continues.
+TEST(FeatureMemory, AnotherFilterAdoptsTheMemoryOfTheSameFeatures) {
+  const DriveCurve softer{5e-3, {0.2, 0.1, 0.0, 0.0}};
+  const std::vector<FeatureSpec> specs = {spectrum({0.3}, stiffening()), stops({3e-4, 1e-4}, stiffening()),
+                                          creep({2.0}, stiffening()), spectrum({0.3}, softer)};
+  FeatureFilter before({FeatureSpec{}, stops({5e-4}, softer), specs[1], specs[2], specs[0]});
+  FeatureFilter always(specs);
+  const auto at = [](int i) { return closed_motion_m(2e-4 * i); };
+  for (int i = 0; i < 2000; ++i) {
+    feed(before, 1e-3 * i, at(i));
+    feed(always, 1e-3 * i, at(i));
+  }
+  FeatureFilter after(specs);
+  feed(after, 1.999, at(1999));
+  after.adopt(before);
+  EXPECT_EQ(after.vector().values[3], 0.0) << "a branch of no earlier model is at rest";
+  for (int i = 2000; i < 4000; ++i) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      ASSERT_EQ(after.vector().values[k], always.vector().values[k]) << feature_name(specs[k]);
+    }
+    feed(after, 1e-3 * i, at(i));
+    feed(always, 1e-3 * i, at(i));
+  }
+  EXPECT_NEAR(after.vector().values[3], always.vector().values[3], 0.01 * std::abs(always.vector().values[0]))
+      << "after seven times its relaxation time";
+}
+
+// An excursion beyond the training domain is remembered as one to its edge, by every feature; the depth itself is not
+// changed.
+TEST(FeatureMemory, KeepsNoDepthBeyondTheDomain) {
+  constexpr double kDeepest_m = 4e-3;
+  FeatureSpec slowed = spectrum({0.05, 0.8}, stiffening());
+  slowed.slowing = 1.5;
+  const std::vector<FeatureSpec> specs = {FeatureSpec{}, lowpass(0.17), slowed, stops({0.1e-3, 1e-3}, stiffening()),
+                                          creep({2.0}, stiffening())};
+  for (const double beyond_m : {4.1e-3, 8e-3, 0.5, 1e3}) {
+    FeatureFilter far(specs, kDeepest_m), edge(specs, kDeepest_m), free(specs);
+    bool differs = false;
+    for (int i = 0; i < 1000; ++i) {
+      const double position_m = 3e-3 * std::sin(0.02 * i);
+      const bool out = i > 200 && i % 97 < 5;
+      feed(far, 1e-3 * i, out ? beyond_m : position_m);
+      feed(edge, 1e-3 * i, out ? kDeepest_m : position_m);
+      feed(free, 1e-3 * i, out ? beyond_m : position_m);
+      ASSERT_EQ(far.vector().values[0], out ? beyond_m : std::max(0.0, position_m));
+      for (std::size_t k = 1; k < specs.size(); ++k) ASSERT_EQ(far.vector().values[k], edge.vector().values[k]) << k;
+      differs = differs || free.vector().values != far.vector().values;
+    }
+    EXPECT_TRUE(differs);
+  }
+}
+
+// How a stream begins: at rest, as the end of a training recording, or after a given motion.
+
+std::vector<FeatureSpec> every_memory() {
+  FeatureSpec slowed = spectrum({0.05, 0.8, 3.0}, stiffening());
+  slowed.slowing = 1.5;
+  return {FeatureSpec{}, {FeatureKind::velocity},           lowpass(0.17),
+          slowed,        stops({1e-4, 1e-3}, stiffening()), creep({2.0}, stiffening())};
+}
+
+TEST(Beginning, InContactAndNearerToAnEndThanToEveryBeginning) {
+  const std::vector<double> memory(memory_size({FeatureSpec{}, lowpass(0.17)}), 0.5);
+  const FeaturePlan plan({FeatureSpec{}, lowpass(0.17)}, 1.0, {{-2e-3, 3e-3, memory}, {1e-3, 5e-3, memory}});
+  const struct {
+    double first_m;
+    int began;
+  } cases[] = {{-2e-3, kBeganAtRest}, {0.0, kBeganAtRest}, {1.5e-3, kBeganAtRest},
+               {2e-3, kBeganAtRest},  {2.1e-3, 0},         {3.9e-3, 0},
+               {4.1e-3, 1},           {50e-3, 1}};
+  for (const auto& [first_m, began] : cases) {
+    FeatureState state;
+    plan.begin(state, {7.0, first_m});
+    EXPECT_EQ(state.began, began) << first_m;
+    plan.update(state, {7.0, first_m}, {first_m});
+    EXPECT_EQ(state.vector.values[1], began < 0 ? 0.0 : 0.5) << first_m;
+  }
+}
+
+// From the end on, such a stream has the same bits as one that went on.
+TEST(Beginning, AtTheEndOfARecordingContinuesIt) {
+  const std::vector<FeatureSpec> specs = every_memory();
+  FeatureFilter always(specs);
+  const auto at = [](int i) { return closed_motion_m(3e-4 * i); };
+  for (int i = 0; i < 2000; ++i) feed(always, 1e-3 * i, at(i));
+  const std::vector<double> memory = always.plan().memory_of(always.state());
+  ASSERT_EQ(memory.size(), memory_size(specs));
+  FeatureFilter continued(specs, 1.0, {{-1e-3, at(1999), memory}}), rested(specs);
+  continued.begin({1.999, at(1999)});
+  for (int i = 1999; i < 4000; ++i) {
+    feed(continued, 1e-3 * i, at(i));
+    feed(rested, 1e-3 * i, at(i));
+    if (i > 1999) feed(always, 1e-3 * i, at(i));
+    for (std::size_t k = 2; k < specs.size(); ++k)
+      ASSERT_EQ(continued.vector().values[k], always.vector().values[k]) << i << " " << feature_name(specs[k]);
+  }
+  EXPECT_NE(rested.vector().values[3], always.vector().values[3]);
+}
+
+Recording press_and_hold(double from_s, double to_s) {
+  Recording recording;
+  for (int i = static_cast<int>(1e3 * from_s); i < static_cast<int>(1e3 * to_s); ++i)
+    recording.rows.push_back({1e-3 * i, std::min(4e-3, 2e-3 * std::max(0.0, 1e-3 * i - 0.5)), 0.1});
+  return recording;
+}
+
+std::vector<double> forces_of(const Recording& recording, const ForceModels& models, const Recording* after,
+                              double& bound_N) {
+  std::vector<double> forces_N;
+  bound_N = 0.0;
+  replay(
+      recording, models,
+      [&](const RecordingRow&, const TickSnapshot& snapshot, const HapticsTick&) {
+        forces_N.push_back(snapshot.force_N[0]);
+        bound_N = std::max(bound_N, snapshot.predicted_error_N[0]);
+      },
+      0.0, after);
+  return forces_N;
+}
+
+TEST(Beginning, AfterARecordingHasTheForcesOfOneRecording) {
+  ModelData data = example_model("trend", KernelKind::cubic, memory_features(), 5);
+  data.correction = nullptr;
+  data.error_bound = ErrorBound{0.01, 0.02, 0.3};
+  const ForceModels models{std::make_shared<const FittedModel>(data)};
+  double known_N, told_N, unknown_N;
+  const Recording first = press_and_hold(0.0, 3.0), second = press_and_hold(3.0, 5.0);
+  const std::vector<double> whole_N = forces_of(press_and_hold(0.0, 5.0), models, nullptr, known_N);
+  const std::vector<double> continued_N = forces_of(second, models, &first, told_N);
+  const std::vector<double> rested_N = forces_of(second, models, nullptr, unknown_N);
+  // The tool is at rest, so that the motion estimate of both is that of the readings.
+  for (std::size_t i = 0; i < continued_N.size(); ++i) ASSERT_NEAR(continued_N[i], whole_N[3000 + i], 1e-6) << i;
+  EXPECT_GT(std::abs(rested_N[0] - whole_N[3000]), 0.05);
+  EXPECT_GT(unknown_N, told_N + 0.05) << "the memory is known after a recording";
+  data.provenance.recordings = {"press"};
+  EXPECT_EQ(began_words(data, 0), "as the end of press");
+  EXPECT_EQ(began_words(data, kBeganAtRest), "at rest");
+  EXPECT_EQ(began_words(data, kBeganAsTold), "as the end of the recording before");
 }
 
 }  // namespace

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <limits>
 
-#include "engine/tick/sensor_identification.h"
+#include "engine/tick/motion_estimator.h"
 #include "tests/support/example_model.h"
 #include "tests/support/live_doubles.h"
 

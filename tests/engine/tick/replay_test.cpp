@@ -1,15 +1,17 @@
-// Replay gives exactly the results of the tick.
-#include "engine/tick/replay.h"
+#include "engine/tick/haptics_tick.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "engine/tick/sensor_identification.h"
+#include "engine/tick/jnd.h"
+#include "engine/tick/motion_estimator.h"
 #include "tests/support/example_model.h"
 
 namespace palpate {
 namespace {
+
+// Replay gives exactly the results of the tick.
 
 using test::example_recording;
 
@@ -78,6 +80,14 @@ TEST(Replay, MovesTheSurface) {
   replay(recording, models, plain.visitor());
   replay(shifted, models, moved.visitor(), offset_m);
   EXPECT_EQ(plain.values, moved.values);
+}
+
+// The paper's conservative line, section 4.1.
+TEST(JndLine, IsThePapersConservativeLine) {
+  const JndLine line;
+  EXPECT_DOUBLE_EQ(line.at(0.0), 0.065);
+  EXPECT_NEAR(line.at(2.5), 0.065 + 0.0633 * 2.5, 1e-15);
+  EXPECT_DOUBLE_EQ(line.at(-2.5), line.at(2.5));
 }
 
 }  // namespace

@@ -1,4 +1,3 @@
-// Each fault of a recording is found, without false alarms on good recordings.
 #include "models/check/check_recording.h"
 
 #include <gtest/gtest.h>
@@ -7,14 +6,20 @@
 #include <cmath>
 #include <filesystem>
 #include <functional>
+#include <utility>
 
+#include "engine/base/random_stream.h"
 #include "engine/base/text.h"
-#include "models/samples/recording_faults.h"
+#include "engine/tick/motion_estimator.h"
+#include "models/samples/samples.h"
+#include "scenes/material/material.h"
 #include "scenes/material/rig.h"
 #include "tests/support/fitting.h"
 
 namespace palpate {
 namespace {
+
+// Each fault of a recording is found, without false alarms on good recordings.
 
 const CheckRequest kSilicone{JndLine{}, true};
 
@@ -58,23 +63,6 @@ void delay_force(Recording& recording, double seconds) {
 void first_seconds(Recording& recording, double from_s, double seconds) {
   std::erase_if(recording.rows,
                 [&](const RecordingRow& row) { return row.time_s < from_s || row.time_s > from_s + seconds; });
-}
-
-// Time in air between two presses is not a hold, although the tool comes back to where it left the surface.
-TEST(CheckRecording, AHoldIsInContact) {
-  Recording recording;
-  constexpr double kAir_m = -0.2e-3;
-  for (int i = 0; i < 4000; ++i) {
-    const double time_s = 0.005 * i;
-    const double in_round_s = std::fmod(time_s, 4.0);  // 2 s of press at 5 mm/s, then 2 s in air
-    const double position_m = std::max(kAir_m, 5e-3 * (1.0 - std::abs(in_round_s - 1.0)));
-    recording.rows.push_back(
-        {.time_s = time_s, .position_m = position_m, .force_N = 400.0 * std::max(0.0, position_m)});
-  }
-  const RecordingCheck check = checked(recording, kSilicone);
-  const Finding* found = find(check, "no_hold");
-  ASSERT_NE(found, nullptr) << all_of(check);
-  EXPECT_LT(found->value, 0.1);
 }
 
 // A press of 8 s to 5 mm; its force relaxes with `relaxation_s` by a half.
@@ -233,16 +221,6 @@ TEST(CheckRecording, TellsAHeldOrQuantisedTopFromClipping) {
   }
 }
 
-TEST(CheckRecording, FindsAMonotonicCompressionOnlyForASceneWithMemory) {
-  Recording recording;
-  for (int i = 0; i < 1000; ++i) {
-    const double depth_m = 1e-5 * i;
-    recording.rows.push_back({0.05 * i, depth_m, 500.0 * depth_m, 0.0, 0.0});
-  }
-  EXPECT_NE(find(checked(recording, kSilicone), "monotonic"), nullptr);
-  EXPECT_EQ(find(checked(recording, CheckRequest{}), "monotonic"), nullptr);
-}
-
 TEST(CheckRecording, BlamesNoVirtualMaterial) {
   for (const Material& material : materials()) {
     for (const std::uint64_t seed : {1ULL, 2ULL, 3ULL}) {
@@ -278,6 +256,105 @@ TEST(CheckRecording, BlamesNoRealRecording) {
       EXPECT_LE(strokes->value, 6.0) << entry.path();
     }
   }
+}
+
+// Recordings with different forces at the same depth, and cases that only look like that.
+
+Recording press(const char* material, std::uint64_t seed) {
+  RigSettings settings = test::train_settings(material);
+  settings.seed = seed;
+  return *test::rig_recording(settings);
+}
+
+Recording changed(Recording recording, double shift_m, double offset_N) {
+  for (RecordingRow& row : recording.rows) {
+    row.position_m += shift_m;
+    row.force_N += offset_N;
+  }
+  return recording;
+}
+
+// Slow strokes from 2 mm to 8 mm, without free air that would determine the force zero.
+Recording strokes(double stiffness_N_per_m) {
+  Recording made;
+  for (int i = 0; i < 4000; ++i) {
+    const double x = 5.0 - 3.0 * std::cos(4e-3 * i);  // mm
+    // A buckling shell: a surface offset cannot explain an offset of its force.
+    const double force_N = 1e-3 * stiffness_N_per_m * (0.2 * x + 4.0 * std::exp(-(x - 5.0) * (x - 5.0)));
+    made.rows.push_back({1e-2 * i, 1e-3 * x, force_N, 0.0, 0.0});
+  }
+  return made;
+}
+
+std::optional<double> contradiction_N(const Recording& first, const Recording& second) {
+  return find_contradiction_N(*prepare_recording(first), *prepare_recording(second), JndLine{});
+}
+
+TEST(Contradiction, RecordingsOfOneMaterialHaveNone) {
+  for (const char* material : {"silicone", "foam", "friction"}) {
+    const Recording first = press(material, 1);
+    EXPECT_FALSE(contradiction_N(first, press(material, 2))) << material;
+    EXPECT_FALSE(contradiction_N(first, changed(press(material, 2), 1e-3, 0.0))) << material;
+  }
+}
+
+TEST(Contradiction, NamesTheDifferenceOfTheForces) {
+  const auto offset_N = contradiction_N(strokes(1000.0), changed(strokes(1000.0), 0.0, 2.8));
+  ASSERT_TRUE(offset_N);
+  EXPECT_NEAR(*offset_N, 2.8, 0.2);
+  EXPECT_TRUE(contradiction_N(strokes(1000.0), strokes(3000.0)));
+  EXPECT_FALSE(contradiction_N(strokes(1000.0), changed(strokes(1000.0), 0.0, 0.05)));
+}
+
+// Identification of a force lag, separately from viscosity (a force lead), and without false alarms.
+
+// The forces of a recording at a constant rate, late by whole rows; rows without a force are dropped.
+std::vector<Sample> late_forces(const std::vector<Sample>& rows, double late_s) {
+  const auto shift = std::lround(late_s / (rows[1].tool.time_s - rows[0].tool.time_s));
+  std::vector<Sample> moved;
+  for (long i = std::max(0L, shift); i < static_cast<long>(rows.size()) + std::min(0L, shift); ++i) {
+    moved.push_back(rows[static_cast<std::size_t>(i)]);
+    moved.back().force_N = rows[static_cast<std::size_t>(i - shift)].force_N;
+  }
+  return moved;
+}
+
+OffsetEstimate lag_of(const std::string& material, double late_s) {
+  RigSettings settings = test::train_settings(material);
+  settings.seconds = 15.0;
+  const Recording recording = *test::rig_recording(settings);
+  const double noise_N = identify_force_noise_N(recording.rows.data(), recording.rows.size());
+  return find_force_lag(late_forces(thinned_rows(recording, kAllRows), late_s), noise_N);
+}
+
+// The tolerance is 2 ms.
+TEST(ForceLag, FindsALateForce) {
+  for (const auto& [material, late_s] :
+       {std::pair{"silicone", 8e-3}, std::pair{"foam", 30e-3}, std::pair{"stiff", -10e-3}}) {
+    const OffsetEstimate found = lag_of(material, late_s);
+    EXPECT_TRUE(found.identified) << material;
+    EXPECT_NEAR(found.at, late_s, 2e-3) << material;
+  }
+}
+
+TEST(ForceLag, InventsNone) {
+  for (const Material& material : materials()) {
+    EXPECT_EQ(lag_of(std::string(material.name), 0.0).at, 0.0) << material.name;
+  }
+}
+
+TEST(NoiseFloor, IsThatOfANormalErrorAtOneForce) {
+  // Noise of 65 mN at a mean force of 0 N is one JND: erf(1 / sqrt 2) = 68.27 % are within the
+  // JND, and the 99 % quantile is 2.576 JND.
+  Recording recording;
+  RandomStream random(1, 0);
+  for (int i = 0; i < 20000; ++i) recording.rows.push_back({1e-3 * i, 1e-3, 0.065 * random.normal()});
+  const PreparedRecordingPointer prepared = prepare_recording(recording);
+  const NoiseFloor floor = noise_floor({prepared.get()}, JndLine{0.065, 0.0});
+  EXPECT_NEAR(floor.force_noise_N, 0.065, 0.002);  // the standard error of the 0.2 quantile of 400 windows, twice
+  const double noise_over_jnd = floor.force_noise_N / 0.065;
+  EXPECT_NEAR(floor.within_jnd, std::erf(1.0 / (std::sqrt(2.0) * noise_over_jnd)), 0.01);
+  EXPECT_NEAR(floor.p99_error_over_jnd, 2.576 * noise_over_jnd, 0.03);
 }
 
 }  // namespace

@@ -1,10 +1,17 @@
 #include "models/correction/methods.h"
 
 #include <gtest/gtest.h>
+#include <Eigen/LU>
+#include <Eigen/QR>
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numeric>
+#include <utility>
+#include <vector>
 
+#include "models/correction/algebra.h"
 #include "models/model/correction.h"
 #include "tests/support/fit_centres.h"
 #include "tests/support/message_parts.h"
@@ -108,6 +115,167 @@ TEST(FitRandom, CentresAreDistinctSitesThatDependOnTheSeed) {
     for (int k = 0; k < j; ++k) EXPECT_GT((centres.col(j) - centres.col(k)).norm(), 0.0);
   }
   EXPECT_NE(centres, test::fit_random(sites, {.centres = 30, .seed = 6})->centres);
+}
+
+using test::random_points;
+
+Result<RbfFunction> function_of(const Sites& sites) {
+  auto solved = solve_direct(sites);
+  if (!solved) return solved.error();
+  return solved->function();
+}
+
+TEST(FitDirect, SameDataSameBits) {
+  const Sites sites = smooth_sites(4, 700, 0.01, 1);
+  const auto a = function_of(sites);
+  const auto b = function_of(sites);
+  ASSERT_TRUE(a.ok() && b.ok());
+  EXPECT_EQ(a->weights, b->weights);
+  EXPECT_EQ(a->tail, b->tail);
+}
+
+TEST(FitDirect, RefusesTooManySitesAndCanBeInterrupted) {
+  Sites large;
+  large.points = Eigen::MatrixXd::Zero(1, kMostDirectSites + 1);
+  large.target_N = large.row_scale = Eigen::VectorXd::Ones(kMostDirectSites + 1);
+  EXPECT_TRUE(test::has_parts(solve_direct(large).error().message, {"20001", "too large", "20000", "; "}));
+  const Sites sites = smooth_sites(2, 300, 0, 1);
+  std::vector<double> asked;
+  ASSERT_TRUE(solve_direct(sites, {[&](double f) { return asked.push_back(f), true; }}).ok());
+  EXPECT_TRUE(std::is_sorted(asked.begin(), asked.end()));
+  EXPECT_EQ(asked.size(), 5u) << "at the start, before and within the factorisation (two blocks), and after it";
+  for (const double fraction : asked) {
+    const auto stopped = solve_direct(sites, {[&](double f) { return f < fraction; }});
+    ASSERT_FALSE(stopped.ok());
+    EXPECT_EQ(stopped.error().message, "interrupted") << fraction;
+  }
+}
+
+using test::fit_greedy;
+
+// Section 4.2.3 literally: tries every site by solving the whole least squares
+// problem.
+Eigen::MatrixXd brute_force_centres(const Sites& sites, KernelKind kernel, int count) {
+  Eigen::MatrixXd matrix = tail_matrix(tail_degree(kernel), sites.points).array().colwise() * sites.row_scale.array();
+  const Eigen::VectorXd data = sites.target_N.cwiseProduct(sites.row_scale);
+  Eigen::MatrixXd centres(sites.dimension(), count);
+  for (int step = 0; step < count; ++step) {
+    matrix.conservativeResize(Eigen::NoChange, matrix.cols() + 1);
+    double best_error = std::numeric_limits<double>::max();
+    Eigen::VectorXd best_column;
+    for (Eigen::Index j = 0; j < sites.count(); ++j) {
+      for (Eigen::Index i = 0; i < sites.count(); ++i)
+        matrix(i, matrix.cols() - 1) =
+            sites.row_scale[i] * kernel_value(kernel, (sites.points.col(i) - sites.points.col(j)).norm());
+      const Eigen::VectorXd solution = matrix.colPivHouseholderQr().solve(data);
+      const double error = (data - matrix * solution).squaredNorm();
+      if (error < best_error) {
+        best_error = error;
+        best_column = matrix.rightCols(1);
+        centres.col(step) = sites.points.col(j);
+      }
+    }
+    matrix.rightCols(1) = best_column;
+  }
+  return centres;
+}
+
+TEST(FitGreedy, AllSitesEqualsBruteForceForwardSelection) {
+  Sites sites = smooth_sites(2, 60, 0.05, 1);
+  for (const KernelKind kernel : kKernelKinds) {
+    sites.kernel = kernel;
+    const auto fitted = fit_greedy(sites, {.centres = 12, .candidates = 0});
+    ASSERT_TRUE(fitted.ok());
+    EXPECT_EQ(fitted->centres, brute_force_centres(sites, kernel, 12)) << kernel_name(kernel);
+  }
+}
+
+using test::fit_kdtree;
+
+Eigen::VectorXd jnd_line_of(const Sites& sites) { return (0.065 + 0.0633 * sites.target_N.array().abs()).matrix(); }
+
+RbfFunction least_squares(const Sites& sites, KernelKind kernel, const Eigen::MatrixXd& centres) {
+  const Eigen::MatrixXd tail = tail_matrix(tail_degree(kernel), sites.points);
+  Eigen::MatrixXd matrix(sites.count(), centres.cols() + tail.cols());
+  for (Eigen::Index i = 0; i < matrix.rows(); ++i)
+    for (Eigen::Index j = 0; j < centres.cols(); ++j)
+      matrix(i, j) = kernel_value(kernel, (sites.points.col(i) - centres.col(j)).norm());
+  matrix.rightCols(tail.cols()) = tail;
+  matrix.array().colwise() *= sites.row_scale.array();
+  const Eigen::VectorXd data = sites.target_N.cwiseProduct(sites.row_scale);
+  const Eigen::VectorXd solution = matrix.colPivHouseholderQr().solve(data);
+  return {kernel, centres, solution.head(centres.cols()), solution.tail(tail.cols())};
+}
+
+using Leaf = std::vector<Eigen::Index>;
+
+// Splits a leaf in its widest dimension, between two different values, as near to the median as possible.
+bool split(std::vector<Leaf>& leaves, std::size_t at, const Eigen::MatrixXd& points) {
+  Leaf& leaf = leaves[at];
+  if (leaf.size() < 2) return false;
+  const Eigen::MatrixXd mine = points(Eigen::all, leaf);
+  Eigen::Index widest = 0;
+  (mine.rowwise().maxCoeff() - mine.rowwise().minCoeff()).maxCoeff(&widest);
+  std::sort(leaf.begin(), leaf.end(), [&](Eigen::Index a, Eigen::Index b) {
+    return std::pair(points(widest, a), a) < std::pair(points(widest, b), b);
+  });
+  const auto from_median = [&](std::size_t i) {
+    return std::abs(static_cast<double>(i) - static_cast<double>(leaf.size() / 2));
+  };
+  std::size_t cut = 0;
+  for (std::size_t i = 1; i < leaf.size(); ++i) {
+    const bool differs = points(widest, leaf[i - 1]) < points(widest, leaf[i]);
+    if (differs && (cut == 0 || from_median(i) < from_median(cut))) cut = i;
+  }
+  if (cut == 0) return false;
+  Leaf upper(leaf.begin() + static_cast<std::ptrdiff_t>(cut), leaf.end());
+  leaf.resize(cut);
+  leaves.push_back(std::move(upper));
+  return true;
+}
+
+Eigen::VectorXd barycentre(const Leaf& leaf, const Eigen::MatrixXd& points) {
+  Eigen::VectorXd sum = Eigen::VectorXd::Zero(points.rows());
+  for (const Eigen::Index site : leaf) sum += points.col(site);
+  return sum / static_cast<double>(leaf.size());
+}
+
+// Section 4.2.2 literally: a full least squares fit after every split.
+Eigen::MatrixXd plain_centres(const Sites& sites, const Eigen::VectorXd& jnd_N, KernelKind kernel, std::size_t count) {
+  std::vector<Leaf> leaves(1, Leaf(static_cast<std::size_t>(sites.count())));
+  std::iota(leaves[0].begin(), leaves[0].end(), Eigen::Index{0});
+  split(leaves, 0, sites.points);
+  while (true) {
+    Eigen::MatrixXd centres(sites.dimension(), static_cast<Eigen::Index>(leaves.size()));
+    for (Eigen::Index k = 0; k < centres.cols(); ++k)
+      centres.col(k) = barycentre(leaves[static_cast<std::size_t>(k)], sites.points);
+    if (leaves.size() == count) return centres;
+    const RbfFunction function = least_squares(sites, kernel, centres);
+    std::vector<std::pair<double, std::size_t>> worst_first;  // of the leaf of each site
+    for (std::size_t k = 0; k < leaves.size(); ++k) {
+      for (const Eigen::Index i : leaves[k]) {
+        const double error = std::abs(rbf_value(function, sites.points.col(i).data()) - sites.target_N[i]);
+        worst_first.emplace_back(-error / jnd_N[i], k);
+      }
+    }
+    std::sort(worst_first.begin(), worst_first.end());
+    for (const auto& [excess, leaf] : worst_first)
+      if (split(leaves, leaf, sites.points)) break;
+  }
+}
+
+TEST(FitKdTree, EqualsAFullRefitAfterEverySplit) {
+  Sites repeated = smooth_sites(3, 500, 0.05, 1);
+  repeated.points.row(0) = (repeated.points.row(0).array() * 10.0).round() / 10.0;
+  for (Sites sites : {smooth_sites(3, 500, 0.05, 1), repeated}) {
+    const Eigen::VectorXd jnd_N = jnd_line_of(sites);
+    for (const KernelKind kernel : kKernelKinds) {
+      sites.kernel = kernel;
+      const auto fitted = fit_kdtree(sites, jnd_N, {.centres = 25});
+      ASSERT_TRUE(fitted.ok());
+      EXPECT_EQ(fitted->centres, plain_centres(sites, jnd_N, kernel, 25)) << kernel_name(kernel);
+    }
+  }
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "models/correction/sites.h"
+#include "models/correction/methods.h"
 
 #include <gtest/gtest.h>
 
@@ -46,19 +46,6 @@ Thinned thinned_by(Thinning thinning, const Samples& samples, const std::vector<
   EXPECT_EQ(result.sites.force_N.size(), result.sites.count());
   EXPECT_EQ(result.sites.fold.size(), static_cast<std::size_t>(result.sites.count()));
   return result;
-}
-
-// Noise fills the four dimensions, so that without the cap almost every sample would be a site.
-TEST(Thinning, CoverageNeverLeavesMoreThanItsCap) {
-  test::Numbers noise(1);
-  const Samples samples = samples_of(recording_of(80000, [&](int i) {
-    const double position_m = 3e-3 + 2e-3 * std::sin(0.02 * i) * std::sin(0.0013 * i) + 5e-4 * noise.next();
-    return std::pair{position_m, 0.5 + 300.0 * position_m + 0.1 * noise.next()};
-  }));
-  const Thinned thinned = thinned_by(Thinning::coverage, samples, test::paper_features());
-  EXPECT_LE(static_cast<std::size_t>(thinned.sites.count()), kCoverageSites);
-  EXPECT_GT(static_cast<std::size_t>(thinned.sites.count()), kCoverageSites / 10);
-  EXPECT_EQ(thinned.sites.samples.sum(), static_cast<double>(samples.contact.size()));
 }
 
 // The tool rests at ten positions, and the only feature is depth: ten sites, each with the mean of its
@@ -110,28 +97,6 @@ TEST(Thinning, ForceReductionKeepsThePapersSamples) {
   EXPECT_EQ(std::vector<double>(thinned.sites.force_N.begin(), thinned.sites.force_N.end()), expected_N);
   EXPECT_EQ(thinned.sites.samples, Eigen::VectorXd::Ones(thinned.sites.count()));
   EXPECT_EQ(thinned.step_N, 0.05);
-}
-
-// u = (x - mean) / sqrt(range 4 sigma).
-TEST(Normalisation, IsByRangeAndDeviation) {
-  const Samples samples = samples_of(test::example_recording(5000, 1000.0));
-  const Eigen::ArrayXXd x = test::must(features_at(samples, test::paper_features(), samples.contact));
-  const Normalisation normalisation = normalisation_of(x);
-  for (Eigen::Index k = 0; k < 4; ++k) {
-    const double mean = x.row(k).mean();
-    const double low = x.row(k).minCoeff();
-    const double high = x.row(k).maxCoeff();
-    const double deviation = std::sqrt((x.row(k) - mean).square().mean());
-    const double scale = std::sqrt((high - low) * 4.0 * deviation);
-    EXPECT_NEAR(normalisation.offset(k), mean, 1e-9 * scale);  // rounding of 5,000 terms
-    EXPECT_NEAR(normalisation.scale(k), scale, 1e-9 * scale);
-    EXPECT_EQ(normalisation.lower(k), low);
-    EXPECT_EQ(normalisation.upper(k), high);
-    // range^a (4 sigma)^(1 - a)
-    EXPECT_NEAR(normalisation.scale_of(0.0)(k), 4.0 * deviation, 1e-9 * scale);
-    EXPECT_NEAR(normalisation.scale_of(0.5)(k), scale, 1e-9 * scale);
-    EXPECT_NEAR(normalisation.scale_of(1.0)(k), high - low, 1e-9 * scale);
-  }
 }
 
 }  // namespace

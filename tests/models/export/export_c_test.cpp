@@ -12,8 +12,7 @@
 #include <vector>
 
 #include "engine/tick/haptics_tick.h"
-#include "engine/tick/replay.h"
-#include "engine/tick/sensor_identification.h"
+#include "engine/tick/motion_estimator.h"
 #include "tests/support/compiled_model.h"
 #include "tests/support/example_model.h"
 

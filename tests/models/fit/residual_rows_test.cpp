@@ -1,9 +1,14 @@
-#include "models/fit/residual_rows.h"
+#include "models/fit/fit.h"
 
 #include <gtest/gtest.h>
+#include <Eigen/LU>
 
+#include <algorithm>
 #include <cmath>
 
+#include "models/correction/algebra.h"
+#include "tests/support/exact_samples.h"
+#include "tests/support/message_parts.h"
 #include "tests/support/random_points.h"
 
 namespace palpate {
@@ -118,6 +123,147 @@ TEST(CorrectionChoice, NeverWorseThanNoneOnWhatIsLeftOut) {
 }
 
 TEST(CorrectionChoice, NothingToLeaveOutMeansNone) { EXPECT_FALSE(choose({}).used); }
+
+std::optional<ErrorBound> bound_of(const std::vector<Prediction>& predictions) {
+  ModelData common;
+  common.largest_force_N = 5.0;
+  return fit_bound(predictions, common);
+}
+
+// `units` of 50 rows with the error 0.1 N times their number, from 1 on, at a force of 1 N.
+std::vector<Prediction> of_units(int units) {
+  std::vector<Prediction> predictions;
+  for (int i = 0; i < 50 * units; ++i) predictions.push_back({0.1 * (i / 50 + 1), 1.0, 0.0, i / 50});
+  return predictions;
+}
+
+// Units whose errors differ in scale, as those of recordings do.
+TEST(FitBound, CoversNewUnitsAndGrowsAwayFromTheData) {
+  test::Numbers numbers(5);
+  std::vector<Prediction> past, future;
+  for (int unit = 0; unit < 80; ++unit) {
+    const double scale = std::exp(between(numbers, -1.0, 1.0));
+    for (int i = 0; i < 100; ++i) {
+      const double force_N = between(numbers, 0.0, 5.0);
+      // A triangular error that grows with the force.
+      const double error_N =
+          scale * (0.01 + 0.02 * force_N) * std::abs(between(numbers, -1.0, 1.0) + between(numbers, -1.0, 1.0));
+      (unit % 2 == 0 ? past : future).push_back({error_N, force_N, 0.0, unit});
+    }
+  }
+  const auto bound = bound_of(past);
+  ASSERT_TRUE(bound.has_value());
+  int covered = 0;
+  for (std::size_t unit = 0; unit < 40; ++unit) {
+    const auto first = future.begin() + static_cast<std::ptrdiff_t>(100 * unit);
+    const auto within = [&](const Prediction& one) { return one.error_N <= bound->at(one.predicted_N, 0.0); };
+    covered += std::count_if(first, first + 100, within) >= 95 ? 1 : 0;
+  }
+  // Nine of ten are expected; the tolerance is three standard deviations.
+  EXPECT_GE(covered, 36 - 6);
+  EXPECT_GE(bound->at(1.0, 1.0), bound->at(1.0, 0.0) + 1.25) << "a quarter of the largest force";
+}
+
+// One row of 50, too few for the 95 % quantile of all, has an error of 1 N: in no phase, or first, or deep, or fast.
+TEST(FitBound, HoldsInEveryPhase) {
+  struct Phase {
+    std::size_t row;
+    double depth_m, speed_m_per_s, bound_N;
+  };
+  for (const Phase& phase : {Phase{25, 0.0, 0.0, 0.1}, {0, 0.0, 0.0, 1.0}, {25, 1e-3, 0.0, 1.0}, {25, 0.0, 0.1, 1.0}}) {
+    std::vector<Prediction> predictions = of_units(2);
+    for (Prediction& one : predictions) one.error_N = 0.1;
+    for (std::size_t unit = 0; unit < 2; ++unit)
+      predictions[50 * unit + phase.row] = {1.0, 1.0, 0.0, static_cast<int>(unit), phase.depth_m, phase.speed_m_per_s};
+    EXPECT_NEAR(bound_of(predictions)->at(1.0, 0.0), phase.bound_N, 0.011) << phase.depth_m << phase.speed_m_per_s;
+  }
+}
+
+// Errors of 3 N for each unit of distance beyond the inner radius, 0.1; a recording that as recorded reads 0.2 N more,
+// with an uncertainty of 0.1 N.
+TEST(FitBound, DistancesCountFromTheInnerRadiusAndForcesAsRecorded) {
+  constexpr Eigen::Index kRows = 200;
+  ResidualRows rows;
+  rows.points = Eigen::MatrixXd::Zero(1, kRows);
+  rows.force_N = Eigen::VectorXd::Constant(kRows, 2.0);
+  rows.depth_m = rows.speed_m_per_s = rows.moved_N = rows.moved_error_N = Eigen::VectorXd::Zero(kRows);
+  rows.trend_N.resize(kRows, 2);
+  for (Eigen::Index i = 0; i < kRows; ++i) {
+    rows.fold.push_back(i < kRows / 2 ? 0 : 1);
+    rows.unit.push_back(rows.fold.back());
+    rows.distance.push_back(0.5 * static_cast<double>(i % 100) / 100.0);
+    rows.trend_N.row(i).setConstant(2.0 - 3.0 * std::max(0.0, rows.distance.back() - 0.1));
+  }
+  ModelData common;
+  common.cover = {{}, 0.1, 0.3};
+  common.largest_force_N = 5.0;
+  const auto bound = fit_bound(predictions_of(rows, common, {}), common);
+  ASSERT_TRUE(bound.has_value());
+  EXPECT_NEAR(bound->per_distance_N, 3.0, 0.1);
+  EXPECT_LT(bound->at(2.0, 0.0), 0.05);
+  rows.moved_N.tail(kRows / 2).setConstant(-0.2);
+  rows.moved_error_N.tail(kRows / 2).setConstant(0.1);
+  EXPECT_NEAR(predictions_of(rows, common, {}).back().error_N - predictions_of(rows, common, {})[99].error_N, 0.3,
+              1e-12);
+}
+
+constexpr int kPlaces = 300;
+constexpr int kRepeats = 4;
+constexpr Eigen::Index kRows = kPlaces * kRepeats;
+
+// A force of two normalised coordinates, 2 to 4 N, with details that take some hundred centres.
+double true_force_N(const Eigen::VectorXd& u) { return 3.0 + std::sin(9.0 * u(0)) * std::cos(7.0 * u(1)); }
+
+// Samples at random places in depth and velocity, each of which comes back four times: in other folds, almost at the
+// same point, with other noise.
+struct Repeated {
+  Samples samples;
+  Eigen::MatrixXd features;
+  Normalisation normalisation;
+  Sites sites;
+  ModelData common;
+};
+
+// `force_of`: the force, N, of the place and the number of a sample; may move the place.
+template <typename Force>
+Repeated repeated_places(const Force& force_of) {
+  Repeated made;
+  test::Numbers numbers(5);
+  const Eigen::MatrixXd places = test::random_points(2, kPlaces, 3);
+  const Eigen::Vector2d middle(3e-3, 0.0), size(2e-3, 0.05);
+  made.features.resize(2, kRows);
+  made.samples = test::exact_samples(static_cast<std::size_t>(kRows), 5e-3, [&](std::size_t i) {
+    const auto row = static_cast<Eigen::Index>(i);
+    Eigen::Vector2d u = places.col(row % kPlaces);
+    const Eigen::Vector2d moved = 1e-9 * Eigen::Vector2d(numbers.next(), numbers.next());
+    const double force_N = force_of(u, i) + 0.2 * numbers.next();
+    made.features.col(row) = middle + size.cwiseProduct(u + moved);
+    return test::ExactRow{1e-3 * static_cast<double>(i), made.features(0, row), made.features(1, row), force_N,
+                          static_cast<int>(5 * row / kRows)};
+  });
+  made.normalisation = normalisation_of(made.features);
+  double step_N = 0.0;
+  made.sites = thin(made.samples, made.features, made.normalisation, Thinning::none, step_N);
+  made.sites.target_N = made.sites.force_N;
+  made.sites.row_scale = made.sites.force_N.cwiseInverse();
+  made.common.largest_force_N = made.samples.force_N;
+  return made;
+}
+Repeated repeated_places() {
+  return repeated_places([](const Eigen::Vector2d& u, std::size_t) { return true_force_N(u); });
+}
+
+TEST(OpenChoices, CanBeInterruptedBeforeEachSetting) {
+  const Repeated from = repeated_places();
+  for (int stop = 1; stop <= 6; ++stop) {
+    int asked = 0;
+    const FitControl control{[&](double) { return ++asked < stop; }};
+    EXPECT_EQ(test::message_of(select_open_choices(from.samples, from.features, from.normalisation, from.sites,
+                                                   from.common, 20, {}, control)),
+              "interrupted");
+    EXPECT_EQ(asked, stop);
+  }
+}
 
 }  // namespace
 }  // namespace palpate

@@ -1,4 +1,3 @@
-// The C interface: forces bit-identical to replay, errors, and no forbidden operations.
 #include "models/library/palpate/palpate.h"
 
 #include <gtest/gtest.h>
@@ -7,6 +6,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <deque>
+#include <fstream>
 #include <memory>
 #include <optional>
 #include <sstream>
@@ -14,8 +14,8 @@
 #include <utility>
 #include <vector>
 
-#include "engine/live/force_limiter.h"
-#include "engine/tick/replay.h"
+#include "engine/live/device.h"
+#include "engine/tick/haptics_tick.h"
 #include "models/model/file/model_io.h"
 #include "tests/support/example_model.h"
 #include "tests/support/message_parts.h"
@@ -25,6 +25,8 @@
 
 namespace palpate {
 namespace {
+
+// The C interface: forces bit-identical to replay, errors, and no forbidden operations.
 
 using StreamPtr = std::unique_ptr<palpate_stream, decltype(&palpate_stream_free)>;
 using RecordingHandle = std::unique_ptr<palpate_recording, decltype(&palpate_recording_free)>;
@@ -488,6 +490,41 @@ TEST_F(LibraryC, AModelIsSavedWithItsBytes) {
   EXPECT_EQ(test::read_text(copy), test::read_text(path));
   EXPECT_EQ(palpate_model_save(model.get(), copy.c_str(), 0, error_, sizeof error_), -1) << "it exists";
   EXPECT_NE(std::string(error_).find("copy.json"), std::string::npos);
+}
+
+// palpate::fit gives the same models in a separate program as `palpate fit`.
+
+TEST(FitLibrary, FitsAndReplaysAsTheProgramDoes) {
+  const test::TemporaryFolder folder;
+  ASSERT_EQ(test::run_palpate(
+                {"synth", "--material", "silicone", "--seed", "4", "--seconds", "6", "--out", folder.file("rig.csv")})
+                .exit_code,
+            0);
+  const std::string recording = folder.file("rig.csv");
+  const auto run = test::run_program({PALPATE_CPP_PROGRAM, recording, folder.path()});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+
+  const auto fit = test::run_palpate(
+      {"fit", "--recording", recording, "--method", "random", "--centres", "40", "--out", folder.file("program.json")});
+  ASSERT_EQ(fit.exit_code, 0) << fit.err;
+  EXPECT_EQ(test::read_text(folder.file("program.json")), test::read_text(folder.file("fitted.json")));
+
+  const auto replay = test::run_palpate(
+      {"replay", "--recording", recording, "--model", folder.file("fitted.json"), "--out", folder.file("forces.csv")});
+  ASSERT_EQ(replay.exit_code, 0) << replay.err;
+  std::istringstream printed(run.out);
+  std::ifstream forces(folder.file("forces.csv"));
+  std::string line;
+  std::getline(forces, line);
+  std::size_t rows = 0;
+  while (std::getline(forces, line)) {
+    std::string force;
+    ASSERT_TRUE(std::getline(printed, force)) << "row " << rows;
+    // The model's force is the last column.
+    EXPECT_EQ(std::stod(line.substr(line.rfind(',') + 1)), std::stod(force)) << "row " << rows;
+    ++rows;
+  }
+  EXPECT_GT(rows, 1000U);
 }
 
 }  // namespace

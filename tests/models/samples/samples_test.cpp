@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <set>
 
+#include "models/samples/selection.h"
 #include "tests/support/example_model.h"
 #include "tests/support/feature_specs.h"
 #include "tests/support/message_parts.h"
@@ -79,15 +81,6 @@ TEST(Samples, OneRecordingOfThreeIsMoved) {
   }
 }
 
-TEST(Samples, WhereAllAreMovedTheTableIs) {
-  for (const double surface_m : {-12e-3, 12e-3}) {
-    const Samples samples = samples_of({presses(5, surface_m), presses(4, surface_m), presses(3, surface_m)});
-    EXPECT_NEAR(samples.surface_m, surface_m, kSurface_m);
-    for (const RecordingOffset& one : samples.offsets) EXPECT_EQ(one.offset_m, 0.0) << one.name;
-    expect_depths_and_forces(samples);
-  }
-}
-
 // Its forces cannot be told from those of another depth, whatever the other recordings show.
 TEST(Samples, ARecordingWithoutFreeAirHasNoOffsetOfItsOwn) {
   const Samples samples = samples_of({strokes_in_contact(6), presses(5), presses(4, 2e-3)});
@@ -120,15 +113,6 @@ TEST(Samples, WhereEveryPositionHasAForceTheSurfaceIsOutsideOfAll) {
   EXPECT_EQ(surface_m(-2e-3, 5, false), 0.0) << "fewer than ten rows and 1 %";
   EXPECT_LT(surface_m(-0.05e-3, 4000, false), -1e-3) << "hardly outside of 0: where the line through the forces is 0";
   EXPECT_GT(surface_m(-2e-3, 0, true), -1e-3) << "free air";
-}
-
-TEST(Samples, TheForceZeroOfEachRecordingIsSubtracted) {
-  const Samples samples = samples_of({presses(5), presses(4, 0.0, 0.3), presses(3, 0.0, -0.05)});
-  const double zeros_N[] = {0.0, 0.3, -0.05};
-  // Without noise it is exact to rounding.
-  for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(samples.offsets[k].force_zero_N, zeros_N[k], 1e-9);
-  EXPECT_EQ(samples.surface_m, 0.0);
-  expect_depths_and_forces(samples);
 }
 
 TEST(Samples, TheOrderOfRecordingsIsIrrelevant) {
@@ -290,6 +274,99 @@ TEST(RecordingEnds, AreThoseAsRecordedWithTheMemoryOfAFilter) {
   EXPECT_NEAR(ends[1].last_position_m, 1e-3, 1e-6);
   const Eigen::MatrixXd values = must(features_at(samples, features, {samples.rows.size() - 1}));
   EXPECT_EQ(ends[1].memory, std::vector{values(1, 0)});
+}
+
+// Mean squared errors, in JND^2, of 100 samples in each fold.
+FoldErrors errors_of(std::vector<double> means) {
+  FoldErrors errors(means.size());
+  for (std::size_t k = 0; k < means.size(); ++k) {
+    for (int i = 0; i < 100; ++i) errors.add(k, std::sqrt(means[k]));
+  }
+  return errors;
+}
+
+std::size_t selected(std::vector<FoldErrors> candidates) { return simplest_adequate(candidates); }
+
+TEST(Selection, ASignificantGainInEveryFoldIsTaken) {
+  EXPECT_EQ(selected({errors_of({10, 12, 11, 13, 9}), errors_of({9, 11, 10, 12, 8})}), 1u);
+}
+
+TEST(Selection, AGainInOneFoldAloneIsNot) {
+  EXPECT_EQ(selected({errors_of({10, 12, 11, 13, 9}), errors_of({1, 12, 11, 13, 9})}), 0u);
+}
+
+TEST(Selection, AFoldThatIsHardForEveryCandidateDoesNotOutvoteTheOthers) {
+  EXPECT_EQ(selected({errors_of({470, 102, 51.6, 3.57, 5.5}), errors_of({18.7, 3.07, 0.59, 0.4, 0.37})}), 1u);
+}
+
+TEST(Selection, ErrorsThatAHandCannotNoticeDoNotCount) {
+  EXPECT_EQ(best_score(std::vector{errors_of({4.0, 1e-3}), errors_of({1.0, 2e-3})}), 1u);
+}
+
+const SearchRange kRange{-10.0, 10.0, 0.5, 1e-3, 1.0};
+
+// Ten blocks, each a parabola with its minimum near `at`.
+BlockCosts bowl(double x, double at, double floor) {
+  BlockCosts costs;
+  for (int b = 0; b < 10; ++b) costs.push_back(floor + (x - at - 0.02 * (b - 4.5)) * (x - at - 0.02 * (b - 4.5)));
+  return costs;
+}
+
+TEST(ProfileSearch, FindsTheOffsetThatAllBlocksAgreeOn) {
+  const OffsetEstimate found = estimate_offset([](double x) { return bowl(x, 7.3, 0.01); }, kRange);
+  EXPECT_TRUE(found.identified);
+  EXPECT_NEAR(found.at, 7.3, 0.01);
+  EXPECT_LT(found.standard_error, 0.2);
+}
+
+TEST(ProfileSearch, ZeroStandsWhileItIsAsGood) {
+  const OffsetEstimate found = estimate_offset([](double x) { return bowl(x, 0.03, 1.0); }, kRange);
+  EXPECT_TRUE(found.identified);
+  EXPECT_EQ(found.at, 0.0);
+}
+
+// If the material can imitate an offset, all blocks have the same error. The jackknife gives
+// 0.05 +- 0.02, but the cost is not significantly lower than at 0.
+TEST(ProfileSearch, AnOffsetThatTheMaterialImitatesIsNotIdentified) {
+  SearchRange with_effect = kRange;
+  with_effect.systematic_effect = 0.3;
+  const OffsetEstimate found = estimate_offset([](double x) { return bowl(x, 0.05, 1.0); }, with_effect);
+  EXPECT_FALSE(found.identified);
+  EXPECT_EQ(found.at, 0.0);
+  EXPECT_NEAR(estimate_offset([](double x) { return bowl(x, 7.3, 0.01); }, with_effect).at, 7.3, 0.01);
+}
+
+TEST(ProfileSearch, AnEdgeTwoMinimaOrOneBlockIdentifyNothing) {
+  const auto edge = [](double x) { return bowl(x, 14.0, 0.01); };
+  const auto two = [](double x) { return bowl(std::abs(x), 5.0, 0.01); };
+  const auto lone = [](double x) {
+    BlockCosts costs(10, 1.0);
+    costs[3] += (x - 5.0) * (x - 5.0);
+    return costs;
+  };
+  for (const std::function<BlockCosts(double)>& cost : {std::function<BlockCosts(double)>(edge), {two}, {lone}}) {
+    const OffsetEstimate found = estimate_offset(cost, kRange);
+    EXPECT_FALSE(found.identified);
+    EXPECT_EQ(found.at, 0.0);
+  }
+  EXPECT_TRUE(estimate_offset(two, kRange).not_zero);
+}
+
+// A linear spring: a surface offset of 1 equals a force offset of 3.
+TEST(ProfileSearch, WhatAForceOffsetExplainsAsWellIsNotTold) {
+  const OffsetEstimate shift = estimate_offset([](double x) { return bowl(x, 1.0, 0.01); }, kRange);
+  ASSERT_TRUE(shift.identified);
+  const OffsetEstimate both = unless_force_offset(
+      shift, [](double f_N) { return bowl(f_N / 3.0, 1.0, 0.01); }, 10.0);
+  EXPECT_FALSE(both.identified);
+  EXPECT_EQ(both.at, 0.0);
+  EXPECT_NEAR(both.minimum_at, 1.0, 0.01);
+  EXPECT_NEAR(both.force_offset_N, 3.0, 0.05);
+  const OffsetEstimate only = unless_force_offset(
+      shift, [](double f_N) { return bowl(f_N / 3.0, 1.0, 9.0); }, 10.0);
+  EXPECT_TRUE(only.identified);
+  EXPECT_EQ(only.at, shift.at);
+  EXPECT_EQ(only.force_offset_N, 0.0);
 }
 
 }  // namespace

@@ -113,7 +113,7 @@ TEST(TrendEstimator, AForceThatWasNotMeasuredIsNoForceToFollow) {
   const TrendEstimator estimator(rows, {});
   const Trend trend = fitted_trend(rows, estimator.fit(estimator.all_columns()), true).trend;
   const double at[] = {kDepth_m};
-  // Within a JND: samples that no feature explains get a small weight (cross_validation.h).
+  // Within a JND: samples that no feature explains get a small weight (trend_estimator.h).
   EXPECT_NEAR(trend.at(at, {FeatureSpec{}}), 3.0, 0.25);
 }
 

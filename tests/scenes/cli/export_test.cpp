@@ -5,8 +5,8 @@
 #include <cmath>
 #include <random>
 
+#include "engine/tick/haptics_tick.h"
 #include "engine/tick/jnd.h"
-#include "engine/tick/replay.h"
 #include "models/correction/methods.h"
 #include "models/model/file/model_io.h"
 #include "tests/support/compiled_model.h"

@@ -127,6 +127,7 @@ TEST_F(FitVerb, WrongUsageListsTheKnownNames) {
 TEST_F(FitVerb, FailuresAreOneErrorLine) {
   expect_refused(fit({"--scene", "marble"}), 2, {"marble", "silicone_block"});
   expect_refused(fit({"--grid", "25", "--features", "scene"}, "voxel"), 1, {"1", "4"});
+  expect_refused(fit({"--grid", "2x2"}, "voxel"), 1, {"2 sizes", "4 features"});
   expect_refused(fit({"--grid", "1000x1000x1000x1000"}, "voxel"), 1, {"at most 1e7"});
   expect_refused(fit({"--recording", folder_.file("none.csv")}), 1, {"none.csv"});
 }

@@ -36,6 +36,8 @@ MEANING = {
     "advice": "what to do; may be empty",
     "beyond_units": "strokes with an error above one JND",
     "began": "the memory of the material at the first row: at rest, or as the end of another recording",
+    "beginning_moved": "figures with its beginning, under a preload, where a training recording with the same one begins: "
+                       "no prediction; null where there is none",
     "bound_95_held": "share of the errors below the 95 % bound, as recorded",
     "bound_95_held_moved": "the same, aligned",
     "centres": "number of centres or of nodes; 0: the trend alone",

@@ -46,16 +46,6 @@ TEST(Record, WritesMotionAndForceOfADeviceAndChecksThem) {
   EXPECT_TRUE(test::has_parts(again.err, {"exists"})) << "after the device's note";
 }
 
-TEST(Record, KeepsMotionAloneOfADeviceThatMeasuresNoForce) {
-  const test::TemporaryFolder folder;
-  const std::string path = folder.file("motion.csv");
-  EXPECT_TRUE(test::has_parts(test::must_run({"record", "--device", "hand", "--seconds", "1.5", "--out", path}).out,
-                              {"has no force"}));
-  EXPECT_TRUE(test::has_parts(test::read_text(path), {"\ntime_s,position_m,velocity_m_per_s"}));
-  EXPECT_TRUE(test::fails(1, {"record", "--device", "hand", "--guide", "--out", folder.file("guided.csv")},
-                          {"error: --guide", "hand", "; "}));
-}
-
 TEST(Record, ARunThatIsStoppedOrKilledLeavesWholeRows) {
   for (const auto& [signal, exit_code] : {std::pair{SIGINT, 0}, {SIGKILL, 128 + SIGKILL}}) {
     SCOPED_TRACE(signal);

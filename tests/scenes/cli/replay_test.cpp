@@ -73,11 +73,12 @@ TEST_F(ReplayVerb, JsonHasTheContractsFields) {
   const std::uint64_t contact = object["contact_samples"];
   ASSERT_EQ(object["models"].size(), models_.size());
   for (const Json& model : object["models"]) {
-    EXPECT_EQ(keys(model),
-              (std::vector<std::string>{"name", "method", "centres", "began", "rms_error_N", "max_error_N",
-                                        "within_jnd", "p99_error_over_jnd", "max_error_over_jnd",
-                                        "out_of_domain_samples", "evaluation_ns", "tick_ns", "surface_moved",
-                                        "surface_offset_m", "surface_identified", "predicted_error", "bins"}));
+    EXPECT_EQ(keys(model), (std::vector<std::string>{"name", "method", "centres", "began", "rms_error_N", "max_error_N",
+                                                     "within_jnd", "p99_error_over_jnd", "max_error_over_jnd",
+                                                     "out_of_domain_samples", "evaluation_ns", "tick_ns",
+                                                     "surface_moved", "surface_offset_m", "beginning_moved",
+                                                     "surface_identified", "predicted_error", "bins"}));
+    EXPECT_TRUE(model["beginning_moved"].is_null()) << "it begins without a preload";
     EXPECT_EQ(keys(model["surface_moved"]), (std::vector<std::string>{"rms_error_N", "max_error_N", "within_jnd",
                                                                       "p99_error_over_jnd", "max_error_over_jnd"}));
     EXPECT_TRUE(model["predicted_error"].is_null()) << "a model without a bound";
@@ -137,24 +138,6 @@ TEST_F(ReplayVerb, FiguresFollowFromTheForcesFile) {
     // The tolerance is for the order of the sums and the last printed digit.
     EXPECT_NEAR(object["models"][m]["rms_error_N"], std::sqrt(squares[m] / contact), 1e-12);
     EXPECT_NEAR(object["models"][m]["within_jnd"], within[m] / contact, 1e-12);
-  }
-}
-
-TEST_F(ReplayVerb, TableHasOneRowPerModelUnderItsUnits) {
-  const std::regex narrow("MODEL +RMS mN +WITHIN JND % +P99 JND +MAX JND +TICK ns");
-  const std::regex wide("MODEL +RMS mN +MAX mN .*TICK P99 ns .*SURFACE mm .*ALIGNED RMS mN .*BOUND JND");
-  for (const bool all : {false, true}) {
-    const auto ran =
-        run({models_[0], models_[5]}, all ? std::vector<std::string>{"--all"} : std::vector<std::string>{});
-    ASSERT_EQ(ran.exit_code, 0) << ran.err;
-    std::istringstream lines(ran.out);
-    std::vector<std::string> rows;
-    for (std::string line; std::getline(lines, line);) rows.push_back(line);
-    ASSERT_GE(rows.size(), 4u) << ran.out;  // a note about the surface may follow
-    EXPECT_TRUE(test::has_parts(rows[0], {"3000 samples"}));
-    EXPECT_TRUE(std::regex_match(rows[1], all ? wide : narrow)) << rows[1];
-    EXPECT_EQ(rows[1].size(), rows[2].size());
-    EXPECT_EQ(rows[1].size(), rows[3].size());
   }
 }
 

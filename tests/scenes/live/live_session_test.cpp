@@ -9,7 +9,7 @@
 #include <map>
 #include <thread>
 
-#include "engine/tick/replay.h"
+#include "engine/tick/haptics_tick.h"
 #include "models/model/file/model_io.h"
 #include "scenes/evaluation/evaluate.h"
 #include "scenes/evaluation/model_errors.h"

@@ -108,23 +108,6 @@ TEST(SessionRecorder, OmitsSamplesThatTheLoopRefused) {
   EXPECT_NEAR(static_cast<double>(recording.rows.size()), 950.0, 12.0);
 }
 
-TEST(SessionRecorder, RecordsOneFileAtATime) {
-  const TemporaryFolder folder;
-  PathDevice device(test::strokes);
-  Rig rig(device);
-  ASSERT_TRUE(rig.start(folder.file("a.csv"), ReferenceKind::truth).ok());
-  EXPECT_TRUE(test::has_parts(rig.start(folder.file("b.csv"), ReferenceKind::truth), {folder.file("a.csv"), "; "}));
-  rig.run(100);
-  EXPECT_FALSE(rig.finish().problem);
-  // The loop may still send samples of the ended recording. They must be discarded.
-  EXPECT_TRUE(test::has_parts(rig.recorder.start({folder.file("a.csv"), ReferenceKind::truth, {}, {}}),
-                              {folder.file("a.csv"), "; "}));
-  ASSERT_TRUE(rig.recorder.start({folder.file("b.csv"), ReferenceKind::truth, {}, {}}).ok());
-  const Notice notice = rig.finish();
-  EXPECT_TRUE(notice.problem) << "fewer than ten rows";
-  EXPECT_EQ(folder.entries(), std::vector<std::string>{"a.csv"});
-}
-
 TEST(SessionRecorder, ReportsAMissingFolder) {
   const TemporaryFolder folder;
   std::filesystem::create_directory(folder.file("sub"));

@@ -8,20 +8,49 @@
 #include <memory>
 #include <vector>
 
+#include "engine/base/random_stream.h"
 #include "scenes/evaluation/model_errors.h"
 #include "scenes/material/material_laws.h"
 #include "scenes/material/rig.h"
 #include "tests/support/message_parts.h"
 #include "tests/support/rt_guard.h"
-#include "tests/support/wandering.h"
 
 namespace palpate {
 namespace {
 
 // Properties of every virtual material.
 
-using test::depth_of_5_N;
-using test::Wandering;
+// A smooth irregular motion in and out of a surface, 0 at time 0.
+struct Wandering {
+  Wandering(std::uint64_t seed, double deepest_m) {
+    RandomStream random(seed, 7);
+    for (int i = 0; i < 4; ++i) {
+      amplitude_m[i] = deepest_m * random.uniform(0.1, 0.4);
+      rate_rad_per_s[i] = 6.28 * random.uniform(0.2, i == 3 ? 12.0 : 4.0);
+    }
+  }
+  double position_m(double t) const {
+    double sum = 0.0;
+    for (int i = 0; i < 4; ++i) sum += amplitude_m[i] * std::sin(rate_rad_per_s[i] * t);
+    return sum;
+  }
+  double velocity_m_per_s(double t) const {
+    double sum = 0.0;
+    for (int i = 0; i < 4; ++i) {
+      sum += amplitude_m[i] * rate_rad_per_s[i] * std::cos(rate_rad_per_s[i] * t);
+    }
+    return sum;
+  }
+  double amplitude_m[4];
+  double rate_rad_per_s[4];
+};
+
+// The depth at which the force of `block` is about 5 N.
+double depth_of_5_N(const Block& block) {
+  double depth_m = 0.0;
+  while (block.half_relaxed_force_N(depth_m) < 5.0) depth_m += 1e-4;
+  return depth_m;
+}
 
 using BlockPtr = std::unique_ptr<Block>;
 
@@ -117,7 +146,7 @@ constexpr const MaxwellParameters* kAll[] = {&kMaxwell, &kFoam, &kElastic, &kSti
 TEST(MaxwellBlock, StepHoldRelaxesAsTheSumOfExponentials) {
   for (const MaxwellParameters* material : kAll) {
     MaxwellBlock block(*material);
-    const double depth_m = test::depth_of_5_N(block);
+    const double depth_m = depth_of_5_N(block);
     // The step is so short that no branch relaxes: h / tau < 2e-8.
     block.step(depth_m, 0.0, 1e-9);
     const double peak_N = block.force_N();
@@ -137,7 +166,7 @@ TEST(MaxwellBlock, StepHoldRelaxesAsTheSumOfExponentials) {
 TEST(MaxwellBlock, LetsGoOfAToolThatLeavesFasterThanItFollows) {
   for (const MaxwellParameters* material : {&kMaxwell, &kFoam}) {
     MaxwellBlock block(*material);
-    const double deep_m = test::depth_of_5_N(block);
+    const double deep_m = depth_of_5_N(block);
     for (int i = 0; i < 3000; ++i) block.step(deep_m, 0.0, 1e-3);
     const double speed = 0.4;
     int apart = 0;

@@ -59,20 +59,6 @@ TEST(Plot, HoldsFromThreeTenthsOfANewtonToThreeKilonewtons) {
   }
 }
 
-TEST(Layout, NamesAtTheEndsOfCurvesDoNotOverlap) {
-  Panel panel;
-  panel.names_at_ends = true;
-  panel.levels = {{0.5, "1 JND"}};
-  for (int i = 0; i < 6; ++i) panel.series.push_back({"model", 0, Mark::line, {{0.0, 0.0}, {1.0, i < 4 ? 0.5 : 1.0}}});
-  const std::vector<NameTag> tags = name_tags(panel, 0.08, 0.01);  // the line is at 0.48: room for 6 names above
-  ASSERT_EQ(tags.size(), 7u);
-  for (std::size_t i = 1; i < tags.size(); ++i) EXPECT_GE(tags[i].y - tags[i - 1].y, 0.08 - 1e-9);
-  EXPECT_LE(tags.back().y, 1.0);
-  // The name of the line stays at the line; those of the curves move.
-  const auto level = std::ranges::find(tags, std::string("1 JND"), &NameTag::text);
-  EXPECT_NEAR(level->y, 0.5 / 1.04, 2e-3);
-}
-
 TEST(Layout, ANameStandsAtItsPointBetweenTheBars) {
   Panel panel;
   panel.names_at_ends = true;
@@ -88,20 +74,6 @@ TEST(Layout, ANameStandsAtItsPointBetweenTheBars) {
   EXPECT_FALSE(tags[1].begins_here);
   EXPECT_DOUBLE_EQ(tags[1].x, 0.95);
   EXPECT_DOUBLE_EQ(tags[1].y, 0.92);
-}
-
-TEST(Layout, MarksEachPeakBeyondTheAxisOnce) {
-  Panel panel;
-  panel.y = {"", "", false, -1.0, 1.0};
-  panel.series = {{"model", 0xD55E00, Mark::line, {{0.0, 0.0}, {1.0, 3.0}, {2.0, 5.0}, {3.0, 0.0}, {4.0, -2.0}}}};
-  const std::vector<Series> marks = cut_marks(panel);
-  ASSERT_EQ(marks.size(), 2u);
-  ASSERT_EQ(marks[0].rows.size(), 1u);
-  EXPECT_EQ(marks[0].rows[0].x, 2.0);
-  EXPECT_EQ(marks[0].rows[0].y, 1.0);
-  EXPECT_EQ(marks[1].rows[0].y, -1.0);
-  panel.y = {};
-  EXPECT_TRUE(cut_marks(panel).empty());
 }
 
 TEST(Plot, NamesAreTextAndNoCommands) {

@@ -44,18 +44,6 @@ TEST(Psychometrics, FindsTheFunctionsThatMadeTheAnswers) {
   }
 }
 
-TEST(Psychometrics, MarksSlopesThatAnswersDoNotBound) {
-  // All correct, guesses, something between, no answers.
-  std::vector<AnswerCell> cells = expected_answers({{5.0, 0.0, 0.0}}, 5.0);
-  for (AnswerCell& cell : cells) cell.judged_larger = std::round(cell.judged_larger);
-  for (const double difference : {-0.4, -0.1, 0.1, 0.4}) {
-    cells.push_back({1, difference, false, difference > 0.0 ? 10.0 : 0.0, 10.0});
-    cells.push_back({2, difference, false, 5.0, 10.0});
-  }
-  const auto functions = fit_psychometric(cells, 4);
-  for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(functions[i].determined, i == 0) << i;
-}
-
 // A session whose answers have exactly the expected frequencies, with `repetitions` of
 // each pair in each order.
 StudyData average_subject(const std::string& code, const std::vector<double>& relative_jnds, int repetitions) {

@@ -1,4 +1,4 @@
-#include "engine/live/force_limiter.h"
+#include "engine/live/device.h"
 
 #include <algorithm>
 #include <cmath>
