@@ -395,6 +395,7 @@ def front_page(options, folder, parts, kinds, results):
     rows, summary, beyond, sentences = parts
     RESULTS.write_text("\n".join(["# Results", "", "Made by `python3 tests/labs.py --write`, whose header describes the columns. Recorded sets",
                                   "come first; the source and licence of each are in a PROVENANCE.md beside it, outside this repository.",
+                                  "Seconds of a fit are wall time beside another fit, and whatever else the machine did.",
                                   "", *rows, "", "Means by rig, with their 95 % intervals:", "", *summary, "", *sentences, "",
                                   "Where a model has little to go by (share [%] within the JND), and its cost:", "", *beyond, ""]))
     report = folder / "report"
