@@ -208,7 +208,7 @@ struct Normalisation {
 };
 
 struct ModelData : Normalisation {
-  std::string name;    // of its plan (models/fit/model_plan.h), e.g. "trend+greedy-100"
+  std::string name;    // of its plan (models/fit/fit.h), e.g. "trend+greedy-100"
   std::string method;  // the name without the number of centres, e.g. "trend+greedy"
   std::vector<FeatureSpec> features;
   Trend trend;

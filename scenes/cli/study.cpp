@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "engine/base/atomic_file.h"
-#include "models/fit/model_plan.h"
+#include "models/fit/fit.h"
 #include "scenes/cli/verbs.h"
 #include "scenes/study/study_analysis.h"
 #include "scenes/study/study_file.h"

@@ -6,7 +6,7 @@
 
 #include "engine/base/text.h"
 #include "engine/recording/recording.h"
-#include "models/fit/model_plan.h"
+#include "models/fit/fit.h"
 #include "scenes/cli/verbs.h"
 #include "scenes/material/rig.h"
 

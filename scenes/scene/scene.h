@@ -93,7 +93,7 @@ Result<Scene> load_scene(const std::string& name);
 // What the scene gives to a fit (models/fit/fit.h).
 TrainingScene training_scene(const Scene& scene);
 
-// The colour 0xRRGGBB of a family of models by its name (models/fit/model_plan.h). 0, the ink colour of the page, for
+// The colour 0xRRGGBB of a family of models by its name (models/fit/fit.h). 0, the ink colour of the page, for
 // methods without a hue and unknown names.
 std::uint32_t method_rgb(std::string_view family);
 

@@ -21,7 +21,6 @@
 #include "engine/base/result.h"
 #include "engine/recording/recording.h"
 #include "models/fit/fit.h"
-#include "models/fit/model_plan.h"
 #include "models/model/fitted_model.h"
 #include "scenes/scene/scene.h"
 

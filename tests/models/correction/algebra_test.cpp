@@ -9,7 +9,6 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
-#include <vector>
 
 #include "models/model/correction.h"
 #include "models/model/kernels.h"
@@ -45,31 +44,6 @@ TEST(SolveWeights, ReproducesAPolynomialOfTheTailExactly) {
     const RbfFunction fitted = solved(sites, sites.points.leftCols(20));
     EXPECT_LE((fitted.tail - tail).cwiseAbs().maxCoeff(), 1e-10) << kernel_name(kernel);
     EXPECT_LE(fitted.weights.cwiseAbs().maxCoeff(), 1e-10);
-  }
-}
-
-TEST(ProjectedKernel, ProjectsTheTailOutAndIsFactorised) {
-  const Sites sites = smooth_sites(2, 60, 0.1, 7);
-  const Eigen::MatrixXd tail = sites.row_scale.asDiagonal() * tail_matrix(1, sites.points);
-  for (const KernelKind kind : kKernelKinds) {
-    const ProjectedKernel projected(kind, sites.points, sites.row_scale);
-    Eigen::MatrixXd basis = Eigen::MatrixXd::Identity(60, 60);
-    projected.project_rows(basis);
-    if (kind != KernelKind::linear) {
-      EXPECT_LT((basis * tail).cwiseAbs().maxCoeff(), 1e-12 * tail.norm());
-    }
-    EXPECT_LT((basis * basis - basis).cwiseAbs().maxCoeff(), 1e-13);
-    EXPECT_LT((basis.col(7) - projected.project(Eigen::VectorXd::Unit(60, 7))).norm(), 1e-13);
-    const Eigen::MatrixXd kernel =
-        definiteness_sign(kind) * naive_matrix(sites, kind, sites.points).leftCols(60) * sites.row_scale.asDiagonal();
-    const double fill = projected.mean_eigenvalue();
-    Eigen::MatrixXd expected = basis * kernel * basis + fill * (Eigen::MatrixXd::Identity(60, 60) - basis);
-    expected.diagonal().array() += 0.1;
-    EXPECT_NEAR(fill, (basis * kernel * basis).trace() / 60.0, 1e-12 * fill) << kernel_name(kind);
-    const auto factor = projected.cholesky(0.1);
-    ASSERT_TRUE(factor);
-    const Eigen::MatrixXd lower = factor->lower.triangularView<Eigen::Lower>();
-    EXPECT_LT((lower * lower.transpose() - expected).cwiseAbs().maxCoeff(), 1e-12 * expected.norm());
   }
 }
 
@@ -139,57 +113,6 @@ TEST(TruncatedWeights, AreThoseOfThePapersPseudoInverse) {
     // 30 centres of which two coincide.
     EXPECT_EQ(rank_before, 29 + tail_size(tail_degree(kernel), 2)) << kernel_name(kernel);
   }
-}
-
-// (c . r)^2 / |c'|^2 from a QR factorisation of all columns chosen so far.
-double gain_from_scratch(const Sites& sites, const CandidateGains& gains, const std::vector<Eigen::Index>& chosen,
-                         Eigen::Index site) {
-  const Eigen::MatrixXd tail = tail_matrix(tail_degree(KernelKind::cubic), sites.points);
-  Eigen::MatrixXd columns(sites.count(), tail.cols() + static_cast<Eigen::Index>(chosen.size()));
-  columns.leftCols(tail.cols()) = sites.row_scale.asDiagonal() * tail;
-  for (std::size_t k = 0; k < chosen.size(); ++k)
-    columns.col(tail.cols() + static_cast<Eigen::Index>(k)) = gains.columns({&chosen[k], 1});
-  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(columns);
-  const Eigen::MatrixXd q = qr.householderQ() * Eigen::MatrixXd::Identity(columns.rows(), columns.cols());
-  const auto outside = [&](Eigen::VectorXd v) {
-    for (int pass = 0; pass < 2; ++pass) v -= q * (q.transpose() * v);
-    return v;
-  };
-  const Eigen::VectorXd c = outside(gains.columns({&site, 1}));
-  const Eigen::VectorXd r = outside(sites.target_N.cwiseProduct(sites.row_scale));
-  return c.dot(r) * c.dot(r) / c.squaredNorm();
-}
-
-// Candidates are updated at various intervals: some at every step, some rarely. The
-// cached gains must equal those computed from scratch.
-TEST(CandidateGains, AreThoseOfAFreshLookHoweverLongAgoTheLastWas) {
-  const Sites sites = test::smooth_sites(4, 400, 0.005, 3);
-  CandidateGains gains(sites);
-  OrthogonalBasis basis(sites, 60);
-  std::vector<Eigen::Index> chosen;
-  for (Eigen::Index step = 0; step < 60; ++step) {
-    std::vector<Eigen::Index> looked_at{399};
-    for (Eigen::Index k = 0; k < 12; ++k) looked_at.push_back((step * 37 + k * 29) % 398);
-    gains.update(looked_at, basis);
-    const Eigen::Index next = looked_at[1];
-    if (step % 20 == 0 || step > 57)
-      for (const Eigen::Index site : looked_at) {
-        if (std::find(chosen.begin(), chosen.end(), site) != chosen.end()) {
-          EXPECT_EQ(gains.gain(site), 0.0) << "chosen already: site " << site;
-          continue;
-        }
-        const double expected = gain_from_scratch(sites, gains, chosen, site);
-        EXPECT_NEAR(gains.gain(site), expected, 1e-6 * expected) << "site " << site << " at step " << step;
-      }
-    if (std::find(chosen.begin(), chosen.end(), next) != chosen.end()) continue;
-    basis.add(gains.columns({&next, 1}));
-    chosen.push_back(next);
-  }
-  EXPECT_GT(chosen.size(), 50U);
-  const Eigen::Index never_seen = 398;
-  gains.update({&never_seen, 1}, basis);
-  const double expected = gain_from_scratch(sites, gains, chosen, never_seen);
-  EXPECT_NEAR(gains.gain(never_seen), expected, 1e-6 * expected);
 }
 
 // Compares fits and values with those of scipy, from tests/golden/rbf_scipy.py.

@@ -1,4 +1,4 @@
-#include "models/fit/model_plan.h"
+#include "models/fit/fit.h"
 
 #include <gtest/gtest.h>
 

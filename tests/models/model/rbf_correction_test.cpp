@@ -118,16 +118,6 @@ TEST_P(RbfCorrectionOnTarget, KernelMatrixAgreesWithTheScalarKernel) {
 
 using test::Numbers;
 
-// Ascending nodes from -1 to 1 with steps that differ a thousandfold.
-VoxelGrid even_grid(double low, double high, const std::vector<int>& sizes) {
-  VoxelGrid grid;
-  for (const int size : sizes) {
-    std::vector<double>& axis = grid.nodes.emplace_back();
-    for (int i = 0; i < size; ++i) axis.push_back(low + (high - low) * i / (size - 1));
-  }
-  return grid;
-}
-
 VoxelGrid uneven_grid(int dimension, int size, std::uint64_t seed) {
   Numbers numbers(seed);
   VoxelGrid grid;

@@ -92,24 +92,6 @@ TEST_F(ExportVerb, EveryMethodGivesReplaysForcesOfAnotherRecording) {
   }
 }
 
-// The estimated noise differs slightly between two recordings, but the identified sensor is the same.
-TEST_F(ExportVerb, PositionsWithNoiseGiveReplaysForcesToo) {
-  const std::string text = exported(recording("silicone", 8.0, 1, 200e-6), {"--method", "trend+random"});
-  EXPECT_LT(worst_N(recording("silicone", 8.0, 2, 200e-6), text), 1e-9);
-}
-
-// The limit is the larger of 1 mN and a fiftieth of the JND.
-TEST_F(ExportVerb, SinglePrecisionDiffersByLessThanTheJnd) {
-  const JndLine jnd;
-  const auto over_limit = [&](double a_N, double b_N) {
-    return std::abs(a_N - b_N) / std::max(1e-3, 0.02 * jnd.at(b_N));
-  };
-  for (const char* material : {"friction", "layered"}) {
-    const std::string text = exported(recording(material, 12.0, 1), {"--method", "trend+greedy"}, {"--float"});
-    EXPECT_LT(worst<float>(recording(material, 8.0, 2), text, over_limit), 1.0) << material;
-  }
-}
-
 TEST_F(ExportVerb, TheEncoderStepIsThatOfTheOption) {
   const std::string text = exported(recording("silicone", 6.0, 1), {"--method", "trend"}, {"--encoder-step", "1e-6"});
   EXPECT_TRUE(test::has_parts(text, {"#define PALPATE_ENCODER_STEP_M 1e-06"}));

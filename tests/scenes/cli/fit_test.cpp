@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "models/fit/model_plan.h"
+#include "models/fit/fit.h"
 #include "models/model/file/model_io.h"
 #include "tests/support/example_model.h"
 #include "tests/support/message_parts.h"

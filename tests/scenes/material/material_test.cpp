@@ -209,21 +209,6 @@ TEST(HereditaryBlock, ABoxRelaxesAsItsExponentialIntegrals) {
   }
 }
 
-// dE/dt = 1: M = sum w tau (1 - exp(-t / tau)), for any step.
-TEST(HereditaryBlock, IsExactOnARampAtEveryStep) {
-  double memory_N[2];
-  const double steps_s[] = {1e-4, 2e-6};
-  for (int k = 0; k < 2; ++k) {
-    Straight block(0.01, 1.0, 0.1);
-    const int count = static_cast<int>(std::lround(0.5 / steps_s[k]));
-    for (int i = 1; i <= count; ++i) memory_N[k] = block.step(i * steps_s[k], 1.0, steps_s[k]) - i * steps_s[k];
-  }
-  EXPECT_NEAR(memory_N[0], memory_N[1], 1e-11);
-  // Integral of 0.1 (1 - exp(-0.5 / tau)) d tau, by substitution of E2.
-  const auto primitive = [](double tau) { return tau - tau * std::exp(-0.5 / tau) - 0.5 * std::expint(-0.5 / tau); };
-  EXPECT_NEAR(memory_N[0], 0.1 * (primitive(1.0) - primitive(0.01)), 1e-5);
-}
-
 TEST(SphereContact, IsHertzNearTheSurface) {
   const SphereContact contact{.radius_m = 0.01, .modulus_Pa = 20e3};
   // The next term is 0.2 a / R, here 0.2 %.
@@ -450,22 +435,6 @@ TEST(Rig, RefusesInvalidSettings) {
     settings.*setting = value;
     EXPECT_TRUE(test::has_parts(record(settings), parts));
   }
-}
-
-TEST(Rig, RecordsTheSensorsAndCanBeInterrupted) {
-  RigSettings settings;
-  settings.seconds = 10.0;
-  const RigRecording whole = record(settings).value();
-  double share = 0.0;
-  const auto follow = [&](double now) { return (share = now) <= 1.0; };
-  const Recording sensors = record_sensors(settings, follow).value();
-  EXPECT_GT(share, 0.5);
-  EXPECT_EQ(sensors.name, "silicone_1");
-  EXPECT_TRUE(sensors.columns.acceleration);
-  const auto& rows = whole.recording.rows;
-  ASSERT_EQ(sensors.rows.size(), rows.size());
-  EXPECT_EQ(std::memcmp(sensors.rows.data(), rows.data(), rows.size() * sizeof(RecordingRow)), 0);
-  EXPECT_EQ(test::message_of(record_sensors(settings, [](double) { return false; })), "interrupted");
 }
 
 }  // namespace

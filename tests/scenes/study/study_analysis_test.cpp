@@ -138,19 +138,6 @@ TEST(JndLineFit, RefusesDecreasingAndNegativeLines) {
   EXPECT_TRUE(test::has_parts(negative, {"-0.1000 N + 20.00 %"}));
 }
 
-// (p + z^2/2n -+ z sqrt(p(1-p)/n + z^2/4n^2)) / (1 + z^2/n) with z = 1.959964; Brown, Cai &
-// DasGupta (2001) tabulate the same.
-TEST(Discrimination, HasTheIntervalOfWilson) {
-  const CorrectShare half = correct_share({"S01", 100, 50, 0});
-  EXPECT_NEAR(half.low, 0.403832, 1e-6);
-  EXPECT_NEAR(half.high, 0.596168, 1e-6);
-  const double z2 = 1.959964 * 1.959964;
-  EXPECT_NEAR(correct_share({"S01", 10, 10, 0}).low, 10.0 / (10.0 + z2), 1e-6) << "closed form when all are right";
-  EXPECT_EQ(correct_share({"S01", 10, 10, 0}).high, 1.0);
-  EXPECT_NEAR(correct_share({"S01", 10, 0, 0}).high, z2 / (10.0 + z2), 1e-6);
-  EXPECT_EQ(correct_share({"S01", 0, 0, 0}).high, 1.0);
-}
-
 TEST(Discrimination, ComparesThePredictionWithTheAnswers) {
   StrokePair strokes;
   strokes.mean_over_jnd = 0.2;
