@@ -87,10 +87,10 @@ class Set:
         run(palpate, "fit", "--recording", *train, "--method", "trend", "--out", found)
         surface_m = json.loads(found.read_text())["features"][0].get("surface_position_m", 0.0)
         self.after = [next((path for path in train if path.stem == AFTER.get(test.stem)), None) for test in tests]
-        zeros_N = {one["file"]: one["force_zero_N"] for one in
-                   json.loads(run(palpate, "check", *train, *tests, "--json"))["recordings"]}
-        self.train, self.tests = ([baselines.Recording(path, surface_m, zeros_N[str(path)]) for path in some]
-                                  for some in (train, tests))
+        # As a fit does, the training counts forces from its free air; tests are as recorded.
+        checked = json.loads(run(palpate, "check", *train, "--json"))["recordings"]
+        self.train = [baselines.Recording(path, surface_m, one["force_zero_N"]) for path, one in zip(train, checked)]
+        self.tests = [baselines.Recording(path, surface_m) for path in tests]
         self.refuse_leaks()
         self.deepest_m = max(one.position.max() for one in self.train)
         self.largest_N = max(abs(one.force).max() for one in self.train)

@@ -36,7 +36,7 @@ struct ReplayedModel {
   ErrorSummary as_recorded;
   ErrorSummary surface_moved, beginning_moved;
   double beginning_m = 0.0;         // of `beginning_moved`; 0: there is none
-  ErrorSummary force_as_recorded;   // where the force zero of the recording is not 0
+  ErrorSummary force_zeroed;        // with the force of the recording's free air subtracted; empty where it is 0
   BoundFigures bound, bound_moved;  // as recorded, with the surface moved
   OffsetEstimate surface;
   ModelTiming time;
@@ -46,7 +46,7 @@ struct ReplayedModel {
 struct ReplayedRecording {
   std::string path;
   std::uint64_t samples = 0, contact_samples = 0;
-  double force_zero_N = 0.0;  // of its free air; subtracted from its forces
+  double force_zero_N = 0.0;  // of its free air
   std::vector<ReplayedModel> models;
 };
 
@@ -111,7 +111,8 @@ OrderedJson model_json(const ReplayedModel& replayed) {
                    {"p99", number_or_null(replayed.time.measured, time.p99_ns)}};
   }
   add_figures(object["surface_moved"], replayed.surface_moved);
-  if (replayed.force_as_recorded.samples > 0) add_figures(object["force_as_recorded"], replayed.force_as_recorded);
+  object["force_zeroed"] = nullptr;
+  if (replayed.force_zeroed.samples > 0) add_figures(object["force_zeroed"], replayed.force_zeroed);
   object["surface_offset_m"] = replayed.surface.at;
   object["beginning_moved"] = nullptr;
   if (replayed.beginning_m != 0.0) {
@@ -220,8 +221,8 @@ void print_recording(const ReplayedRecording& replayed, bool all) {
               static_cast<unsigned long long>(replayed.samples),
               static_cast<unsigned long long>(replayed.contact_samples));
   if (const ReplayedModel& first = replayed.models.front(); replayed.force_zero_N != 0.0)
-    std::printf("; forces count from %+.3g N, that of its free air (as recorded: %.64s %.2f %% within the JND)",
-                replayed.force_zero_N, first.loaded.name.c_str(), 1e2 * first.force_as_recorded.within_jnd);
+    std::printf("; its free air reads %+.3g N: forces counted from there, %.64s has %.2f %% within the JND",
+                replayed.force_zero_N, first.loaded.name.c_str(), 1e2 * first.force_zeroed.within_jnd);
   std::printf("\n");
   std::vector<std::vector<std::string>> rows(1);
   for (const ReplayedModel& one : replayed.models) {
@@ -266,11 +267,10 @@ class ForcesFile {
     return forces;
   }
 
-  // `recorded_N`: the force as recorded.
-  void add(const RecordingRow& row, const TickSnapshot& snapshot, const HapticsTick& tick, double recorded_N) {
+  void add(const RecordingRow& row, const TickSnapshot& snapshot, const HapticsTick& tick) {
     std::string line;
     const auto append = [&](double value) { (line += line.empty() ? "" : ",") += shortest(value); };
-    for (const double value : {row.time_s, row.position_m, recorded_N, snapshot.depth_m}) append(value);
+    for (const double value : {row.time_s, row.position_m, row.force_N, snapshot.depth_m}) append(value);
     for (const auto& [model, index] : columns_) append(tick.features_of(model).values[index]);
     for (std::size_t m = 0; m < tick.model_count(); ++m) append(snapshot.force_N[m]);
     file_.write(line + "\n");
@@ -340,36 +340,33 @@ Result<ReplayedRecording> replay_one(const CheckedFile& checked, const Recording
   EvaluationRequest request;
   request.after = after;
   request.move_beginning = true;
-  request.force_zero_N = checked.prepared->surface.force_zero_N;
-  std::size_t place = 0;
   request.also = [&](const RecordingRow& row, const TickSnapshot& snapshot, const HapticsTick& tick) {
-    if (forces) forces->add(row, snapshot, tick, whole->rows[place++].force_N);
+    if (forces) forces->add(row, snapshot, tick);
     const auto begin = snapshot.force_N.begin();
     if (!plot_path.empty())
       moments.push_back({row.time_s, row.force_N, snapshot.in_contact, {begin, begin + snapshot.model_count}});
   };
   const auto evaluation = evaluate(*whole, evaluated, request);
   if (!evaluation) return evaluation.error();
-  const double force_zero_N = request.force_zero_N;
   request.also = {};
-  request.force_zero_N = 0.0;
-  request.move_surface = false;
-  Evaluation untared;
-  if (force_zero_N != 0.0) {
-    auto as_recorded = evaluate(*whole, evaluated, request);
-    if (!as_recorded) return as_recorded.error();
-    untared = std::move(*as_recorded);
+  request.force_zero_N = checked.prepared->surface.force_zero_N;
+  request.move_surface = request.move_beginning = false;
+  Evaluation zeroed;
+  if (request.force_zero_N != 0.0) {
+    auto evaluated_again = evaluate(*whole, evaluated, request);
+    if (!evaluated_again) return evaluated_again.error();
+    zeroed = std::move(*evaluated_again);
   }
   if (forces) {
     if (const Status status = forces->commit(); !status) return status.error();
   }
   ReplayedRecording replayed{
-      checked.path, evaluation->samples, evaluation->no_force.summary().samples, force_zero_N, {}};
+      checked.path, evaluation->samples, evaluation->no_force.summary().samples, request.force_zero_N, {}};
   const std::vector<ModelTiming> times = time_models(pointers, evaluation->timing);
   for (std::size_t i = 0; i < models.size(); ++i) {
     const auto& [recorded, moved, begins, surfaces, began, beginning_m] = evaluation->models[i];
     replayed.models.push_back({models[i], recorded.summary(), moved.summary(), begins.summary(), beginning_m,
-                               untared.models.empty() ? ErrorSummary{} : untared.models[i].as_recorded.summary(),
+                               zeroed.models.empty() ? ErrorSummary{} : zeroed.models[i].as_recorded.summary(),
                                recorded.bounds(), moved.bounds(), surfaces.front(), times[i],
                                began_words(models[i].model->data(), began)});
   }

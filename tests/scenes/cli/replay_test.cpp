@@ -73,11 +73,11 @@ TEST_F(ReplayVerb, JsonHasTheContractsFields) {
   const std::uint64_t contact = object["contact_samples"];
   ASSERT_EQ(object["models"].size(), models_.size());
   for (const Json& model : object["models"]) {
-    EXPECT_EQ(keys(model), (std::vector<std::string>{"name", "method", "centres", "began", "rms_error_N", "max_error_N",
-                                                     "within_jnd", "p99_error_over_jnd", "max_error_over_jnd",
-                                                     "out_of_domain_samples", "evaluation_ns", "tick_ns",
-                                                     "surface_moved", "surface_offset_m", "beginning_moved",
-                                                     "surface_identified", "predicted_error", "bins"}));
+    EXPECT_EQ(keys(model), (std::vector<std::string>{
+                               "name", "method", "centres", "began", "rms_error_N", "max_error_N", "within_jnd",
+                               "p99_error_over_jnd", "max_error_over_jnd", "out_of_domain_samples", "evaluation_ns",
+                               "tick_ns", "surface_moved", "force_zeroed", "surface_offset_m", "beginning_moved",
+                               "surface_identified", "predicted_error", "bins"}));
     EXPECT_TRUE(model["beginning_moved"].is_null()) << "it begins without a preload";
     EXPECT_EQ(keys(model["surface_moved"]), (std::vector<std::string>{"rms_error_N", "max_error_N", "within_jnd",
                                                                       "p99_error_over_jnd", "max_error_over_jnd"}));

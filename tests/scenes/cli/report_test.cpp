@@ -224,8 +224,10 @@ TEST_F(ReportVerb, AnOffsetOfForceAndSurfaceChangesNoFigure) {
     const Json replayed =
         Json::parse(test::must_run({"replay", "--recording", recordings[1], "--model", model, "--json"}).out);
     EXPECT_NEAR(replayed["force_zero_N"].get<double>(), 0.18 * share, 2e-3);
-    EXPECT_EQ(replayed["models"][0].contains("force_as_recorded"), share > 0.0);
-    EXPECT_GT(replayed["models"][0]["within_jnd"].get<double>(), 0.97);
+    const Json& model_of_replay = replayed["models"][0];  // its plain figures are as recorded
+    EXPECT_EQ(model_of_replay["within_jnd"].get<double>() > 0.8, share == 0.0);
+    const Json& zeroed = model_of_replay["force_zeroed"];
+    EXPECT_GT((zeroed.is_null() ? model_of_replay : zeroed)["within_jnd"].get<double>(), 0.97);
   }
 }
 
