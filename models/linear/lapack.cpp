@@ -244,11 +244,10 @@ Eigen::VectorXd solve_non_negative(const Eigen::MatrixXd& gram, const Eigen::Vec
     for (Eigen::Index i = 0; i < size; ++i)
       if (passive(i)) index.push_back(i);
     Eigen::VectorXd full = Eigen::VectorXd::Zero(size);
-    Eigen::MatrixXd part = scaled(index, index);
-    Eigen::VectorXd values = right(index);
-    cholesky_in_place(part);
-    cholesky_solve(part, values);
-    full(index) = values;
+    // By Eigen: LAPACK's would depend on the number of threads of the program that calls the library.
+    const Eigen::MatrixXd part = scaled(index, index);
+    const Eigen::VectorXd part_right = right(index);
+    if (!index.empty()) full(index) = part.llt().solve(part_right).eval();
     return full;
   };
   // Moves x towards the minimum over the passive set. A coefficient that would become negative stops the step and

@@ -53,6 +53,7 @@ MEANING = {
     "flips": "roles whose sign was reversed",
     "folds": "of the cross-validation over several training recordings; 0: there is none",
     "force_zero_N": "to be subtracted from force_N",
+    "force_zeroed": "figures with force_zero_N subtracted from this recording; null where that is 0",
     "guessed": "whether the name decided, and not an option",
     "header_line": "line of the column names, from 1; 0: none",
     "identified": "whether the recording determines its surface",
