@@ -341,7 +341,7 @@ TEST_F(ExhibitTest, AForceDeviceIsComparedBlindly) {
   for (int i = 0; i < 20 && !game().can_answer(); ++i) {
     stroke_device();
     if (i == 0) press(GLFW_KEY_LEFT);
-    if (i == 3) press(GLFW_KEY_RIGHT);
+    if (i == 9) press(GLFW_KEY_RIGHT);
   }
   EXPECT_NE(app_->session().models().selected(), one);
   ASSERT_TRUE(until([&] { return shows("1"); }));
