@@ -289,8 +289,7 @@ class Checker {
       add("surface_offset", Severity::note, surface_.offset_m,
           words("the force begins at %+.3g mm (+- %.2g, %s), not at 0", 1e3 * surface_.offset_m,
                 1e3 * surface_.standard_error_m, kOnsetLaw),
-          "a model fitted to this recording has its surface there; to make this 0: " +
-              correction());
+          "a model fitted to this recording has its surface there; to make this 0: " + correction());
     }
     if (!surface_.identified()) check_outside();
     // A model takes the material to be at rest at the first position.

@@ -237,8 +237,8 @@ namespace {
 
 // Active set and robust weights converge within these passes.
 constexpr int kPasses = 4;
-// A robust factor that changes by less stays as it is: the fit takes 0.7 of the time, and the mean share of the recorded
-// rigs is within 0.15 points (tests/labs.py).
+// A robust factor that changes by less stays as it is: the fit takes 0.7 of the time, and the mean share of the
+// recorded rigs is within 0.15 points (tests/labs.py).
 constexpr double kSameScale = 0.01;
 // The candidates for lambda: 1e-6 smooths over a third of the depth, 1e-9 over two pieces.
 constexpr std::array kSmoothness{1e-6, 1e-7, 1e-8, 1e-9};
@@ -297,7 +297,8 @@ TrendEstimator::TrendEstimator(const TrendColumns& columns, const JndLine& jnd, 
   const int folds = columns.folds();
   deepest_elsewhere_m_ = deepest_elsewhere_m(fold, depth_m, folds);
   const BlasThreads one_thread(1);
-  parallel_for(static_cast<int>(equations_.size()), [&](int k) { equations_[static_cast<std::size_t>(k)] = gather(k); });
+  parallel_for(static_cast<int>(equations_.size()),
+               [&](int k) { equations_[static_cast<std::size_t>(k)] = gather(k); });
   if (smoothness > 0.0) return;
   std::vector<FoldErrors> errors(kSmoothness.size());
   parallel_for(static_cast<int>(kSmoothness.size()), [&](int i) {

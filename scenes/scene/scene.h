@@ -53,8 +53,8 @@ enum class Finish { silicone, foam, gel, rubber, skin, dome };
 struct Scene {
   std::string name;  // of its file
   std::string title, description;
-  std::string shows;  // in a few words; may be empty
-  int order = 0;      // place in the list of scenes, from 1; 0: not in it
+  std::string shows;                    // in a few words; may be empty
+  int order = 0;                        // place in the list of scenes, from 1; 0: not in it
   std::optional<std::string> material;  // name of the virtual material; empty: models need recordings
   std::vector<std::string> recordings;  // files that a session uses instead of the virtual material
   std::vector<FeatureSpec> features;    // 1 to 8: always the depth; velocity, low-pass velocities
