@@ -17,15 +17,14 @@ namespace fs = std::filesystem;
 
 constexpr const char* kPictureHelp[] = {
     "The probe presses the same block with several models at once; the sentence at the top says which one to take.",
-    "JND: the difference of force that people notice in three of four trials; 0.065 N + 6.33 % of the force is the "
-    "line "
-    "of Hoever & Harders (2009), below their measured points. Grey band: one JND to either side of the reference.",
-    "Green: the truth, a true or recorded force. Other colours: one for each method; hollow marks: the paper of 2009. "
-    "In "
-    "the cut of a block: the error of this press, from white (0) over yellow to dark red (1 JND), violet with a ring "
-    "above; the arrows are the forces of the model and, narrow, of the truth.",
-    "Centres: the points that a radial basis function model is made of. More centres cost time. They mostly bring more "
-    "of a press within the JND (the column % in JND), but the largest errors (99 %) may grow."};
+    ("JND: the difference of force that people notice in three of four trials; 0.065 N + 6.33 % of the force is the "
+     "line of Hoever & Harders (2009), below their measured points. Grey band: one JND to either side of the "
+     "reference."),
+    ("Green: the truth, a true or recorded force. Other colours: one for each method; hollow marks: the paper of 2009. "
+     "In the cut of a block: the error of this press, from white (0) over yellow to dark red (1 JND), violet with a "
+     "ring above; the arrows are the forces of the model and, narrow, of the truth."),
+    ("Centres: the points that a radial basis function model is made of. More centres cost time. They mostly bring "
+     "more of a press within the JND (the column % in JND), but the largest errors (99 %) may grow.")};
 
 constexpr std::pair<int, const char*> kKeyNames[] = {
     {GLFW_KEY_SPACE, "Space"},   {GLFW_KEY_HOME, "Home"},   {GLFW_KEY_BACKSPACE, "Backspace"},
