@@ -131,7 +131,7 @@ class Importer {
     layout_ = std::move(*layout);
     std::vector<Reading> readings;
     std::size_t between = 0;
-    for (Block& block : layout_.blocks) {
+    for (RowBlock& block : layout_.blocks) {
       block.begin += before;
       block.end += before;
       if (!readings.empty())
@@ -153,7 +153,7 @@ class Importer {
                   readings);
     }
     block_ = layout_.blocks[std::max<std::size_t>(request_.block, 1) - 1];
-    for (const Block& other : layout_.blocks) {
+    for (const RowBlock& other : layout_.blocks) {
       if (other.begin == block_.begin) continue;
       leave_out("in another block", other.begin + 1, other.rows);
       leave_out("in another block", other.end, 0);
@@ -886,7 +886,7 @@ class Importer {
   bool has_arrivals_ = false;
   ImportedTable table_;
   TableLayout layout_;
-  Block block_;
+  RowBlock block_;
   std::size_t end_of_block_ = 0;
   std::vector<ForeignColumn> columns_;
   std::array<std::size_t, kRoles> number_{}, unit_column_{};  // from 1; 0: none

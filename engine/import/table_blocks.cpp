@@ -171,7 +171,7 @@ class BlockFinder {
     }
     close();
     split_off_numbers_of_columns();
-    layout_.skippable = layout_.skippable && std::ranges::all_of(layout_.blocks, [&](const Block& block) {
+    layout_.skippable = layout_.skippable && std::ranges::all_of(layout_.blocks, [&](const RowBlock& block) {
                           return block.fields == layout_.fields;
                         });
   }
@@ -208,7 +208,7 @@ class BlockFinder {
   void split_off_numbers_of_columns() {
     Fields next;
     for (std::size_t b = 0; b < layout_.blocks.size(); ++b) {
-      Block& block = layout_.blocks[b];
+      RowBlock& block = layout_.blocks[b];
       if (block.rows < 3 || block.fields != layout_.fields) continue;
       split_table_fields(lines_[block.begin], layout_.delimiter, fields_);
       std::size_t second = block.begin + 1;
@@ -220,7 +220,7 @@ class BlockFinder {
       const bool decimals = std::ranges::any_of(
           next, [&](std::string_view field) { return field.find(layout_.decimal) != std::string_view::npos; });
       if (!numbered || !decimals) continue;
-      const Block number{block.begin, block.begin + 1, 1, block.fields};
+      const RowBlock number{block.begin, block.begin + 1, 1, block.fields};
       block.begin = second;
       --block.rows;
       layout_.blocks.insert(layout_.blocks.begin() + static_cast<std::ptrdiff_t>(b), number);
@@ -235,7 +235,7 @@ class BlockFinder {
   Fields fields_;
   std::size_t fields_now_ = 0;
   bool open_ = false;
-  Block block_;
+  RowBlock block_;
 };
 
 }  // namespace

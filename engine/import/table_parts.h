@@ -131,7 +131,7 @@ NameAndUnit split_name_and_unit(std::string_view header);
 // Blocks of rows, and their header (table_blocks.cpp, table_header.cpp). ---------------------------------------------
 
 // A run of rows of numbers.
-struct Block {
+struct RowBlock {
   std::size_t begin = 0, end = 0;  // lines
   std::size_t rows = 0, fields = 0;
 };
@@ -142,7 +142,7 @@ struct TableLayout {
   std::size_t columns = 0;     // of a row; empty cells at its end do not count
   std::size_t widest = 0;      // fields of the widest rows that are no exception
   bool first_is_word = false;  // of most rows
-  std::vector<Block> blocks{};
+  std::vector<RowBlock> blocks{};
   bool skippable = true;  // the lines between the blocks are no headers, so that they may be left out
 
   Fields names{};          // one a column, unless `misfit`; empty without a header

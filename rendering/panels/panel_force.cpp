@@ -124,7 +124,7 @@ struct Drawing {
     if (plot.handle_mouse(*shown.history)) hovered = true;
 
     const CurveColumn* under = columns.at(view.time.hover_s);
-    std::vector<Reading> readings;
+    std::vector<CurveReading> readings;
     const auto read = [&](const std::string& name, const Rgb& in, double value, const char* of) {
       if (!std::isnan(value)) readings.push_back({name + "  " + at_most_three_decimals(value) + of, in});
     };

@@ -206,12 +206,13 @@ bool TimePlot::handle_mouse(const ForceHistory& history) {
   return hovered();
 }
 
-void TimePlot::draw_readings(const std::vector<Reading>& readings) const {
+void TimePlot::draw_readings(const std::vector<CurveReading>& readings) const {
   if (!hovered() || readings.empty()) return;
   const std::string heading = "at " + fixed(time_.hover_s - time_.zero_s, 3) + " s";
   const float line = ImGui::GetTextLineHeight();
   float width = ImGui::CalcTextSize(heading.c_str()).x;
-  for (const Reading& reading : readings) width = std::max(width, ImGui::CalcTextSize(reading.text.c_str()).x + line);
+  for (const CurveReading& reading : readings)
+    width = std::max(width, ImGui::CalcTextSize(reading.text.c_str()).x + line);
   const float pad = 0.4F * line;
   const float mouse_px = time_px(time_.hover_s);
   // The text is on the side with more room, so that it does not hide the curve under the mouse.
@@ -223,7 +224,7 @@ void TimePlot::draw_readings(const std::vector<Reading>& readings) const {
   front.AddRect(low, high, ink(style_.colours().grid), 4.0F);
   float y = low.y + pad;
   front.AddText({low.x + pad, y}, ink(style_.colours().text), heading.c_str());
-  for (const Reading& reading : readings) {
+  for (const CurveReading& reading : readings) {
     y += line;
     front.AddRectFilled({low.x + pad, y + 0.3F * line}, {low.x + pad + 0.5F * line, y + 0.8F * line},
                         ink(reading.colour), 2.0F);

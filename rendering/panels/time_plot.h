@@ -64,7 +64,7 @@ class CurveColumns {
 // The range of a quantity in a column; NaN: there is none.
 using ColumnRange = std::function<Range(const CurveColumn&)>;
 
-struct Reading {
+struct CurveReading {
   std::string text;
   Rgb colour{0.0F};
 };
@@ -87,7 +87,7 @@ class TimePlot : public LivePlot {
   // click resumes. Draws the range of the zoom and the moment. Returns whether the mouse is over the plot.
   bool handle_mouse(const ForceHistory& history);
   // Draws a box with readings beside the time under the mouse, if the mouse is over the plot.
-  void draw_readings(const std::vector<Reading>& readings) const;
+  void draw_readings(const std::vector<CurveReading>& readings) const;
 
  private:
   struct ColumnPixels {
