@@ -8,7 +8,7 @@
 // of B that the passivity controller provides. b and c are those of the simulation in
 // tests/accuracy/closed_loop_link_test.cpp: over rates, groups, delays and jitter, the lightest hand (50 g, 2.2 N s/m)
 // keeps still within 0.35 mm up to K T = 2.1 N s/m + 0.46 B with an encoder of 10 um; the limit is 0.85 of that. The
-// controller has a play of one step, so that c goes to 0 with coarser ones; at 0.1 mm such a hand may swing by 0.7 mm.
+// controller has a play of one step, so that c goes to 0 at steps of 50 um. The test does not cover coarser encoders.
 // B limits the sum of the damping of model and user, and that of user and controller. What it achieves
 // (PALPATE_GRID=1 palpate_tests --gtest_filter=*BehindAnyLink): behind simulated links of 100 Hz to 5 kHz, with groups
 // of up to 16 and delays up to 50 ms, a hand at rest swings by at most 0.16 mm, and a press returns 0.5 mJ more than it
@@ -258,7 +258,7 @@ class ForceGuard {
     const double since_s = time_s_ - std::exchange(sampled_s_, time_s_);
     // A force that is written in a tick acts from the next tick on at the latest, until the next sample is used.
     const bool known = age.largest_s >= 0.0;
-    // A force whose delay nobody knows drives a hand, whatever the model.
+    // A force with an unknown delay can make a hand oscillate.
     waits_ = waits_ && !known;
     if (!known || !(age.largest_s > 0.0 || since_s > 0.0)) return;
     acted_ = age.largest_s > 0.0 ? age : ForceAge{tick_s, since_s + tick_s};

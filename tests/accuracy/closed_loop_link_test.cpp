@@ -82,7 +82,7 @@ double largest_still_share(const Link& link, const Grip& grip, const Stiffness& 
 
 TEST(ClosedLoop, NoHandIsDrivenBehindAnyLink) {
   const bool whole = std::getenv("PALPATE_GRID") != nullptr;
-  std::vector<double> shares_of_still;
+  std::vector<double> shares_of_still, returned_J;
   double worst_m = 0.0, worst_J = 0.0, worst_wander = 0.0, worst_returned_J = 0.0;
   std::size_t number = 0, runs = 0, cut = 0, returning = 0;
   for (const Link& link : links()) {
@@ -113,6 +113,7 @@ TEST(ClosedLoop, NoHandIsDrivenBehindAnyLink) {
       worst_wander = std::max(worst_wander, one.most_share - one.least_share);
       // A link so slow that the device is refused has no force.
       if (one.force_N == 0.0 || !(whole || number / 16 % 16 == 0)) continue;
+      returned_J.push_back(one.returned_J);
       const double still = largest_still_share(link, grip, model);
       shares_of_still.push_back(one.least_share / std::max(still, 1e-3));
       if (whole) {
@@ -128,6 +129,9 @@ TEST(ClosedLoop, NoHandIsDrivenBehindAnyLink) {
       1e3 * worst_m, 1e6 * worst_J, worst_wander, median, shares_of_still.size());
   std::printf("a press returns up to %.2f mJ more than it took; %zu of %zu more than %.0f uJ\n", 1e3 * worst_returned_J,
               returning, runs, 1e6 * kEncoderReturns_J);
+  std::ranges::sort(returned_J);
+  std::printf("of %zu with a force: %.2f mJ in the median, %.2f in 95 %%\n", returned_J.size(),
+              1e3 * returned_J[returned_J.size() / 2], 1e3 * returned_J[returned_J.size() * 95 / 100]);
   EXPECT_GE(median, 0.6);
   EXPECT_LE(cut, runs / 50);
 }
