@@ -402,8 +402,8 @@ def front_page(options, folder, parts, kinds, results):
     run(options.palpate, "report", "--train", folder / SHOWN / "1.csv", "--test", folder / SHOWN / "2.csv", "--out", report)
     answer = json.loads((report / "report.json").read_text())["timings"]["answer"]
     shutil.copyfile(report / "figures" / "speed_error.png", ROOT / FIGURE)
-    wrapped = [line for one in [*sentences, f"The report on the virtual {SHOWN} block: " + answer]
-               for line in [*textwrap.wrap(one, 118), ""]]
+    short = [one.split("; median width")[0].rstrip(".") + "." for one in sentences]  # the phases are in RESULTS.md
+    wrapped = [*textwrap.wrap(" ".join([*short, f"The report on the virtual {SHOWN} block: {answer}"]), 118), ""]
     block = "\n".join([*summary, "", *wrapped,
                        f"![Time of a whole tick against error on the virtual {SHOWN} block: the methods of 2009 hollow, this program filled]({FIGURE})"])
     readme = ROOT / "README.md"
@@ -444,7 +444,8 @@ def main():
     kept = json.loads(options.baselines.read_text()) if options.baselines and options.baselines.exists() else {}
     with tempfile.TemporaryDirectory() as scratch, concurrent.futures.ThreadPoolExecutor(2) as pool:
         folder = pathlib.Path(scratch)
-        os.environ["PALPATE_LIBRARY"] = str(pathlib.Path(options.palpate).resolve().with_name("libpalpate_fit.so"))
+        build = pathlib.Path(options.palpate).resolve().parent
+        os.environ["PALPATE_LIBRARY"] = str(build / "models" / "library" / "libpalpate_fit.so")
         real = [Set(*one, folder, options.palpate) for one in recorded(options) if wanted(options, one[0])]
         made = [Set(*one, folder, options.palpate) for one in virtual(options, folder)] if not options.no_virtual else []
         kinds = {kind: sets for kind, sets in ((RECORDED, real), (VIRTUAL, made)) if sets}
