@@ -43,11 +43,13 @@ ProjectedKernel::ProjectedKernel(KernelKind kernel, const Eigen::MatrixXd& point
   for (Eigen::Index k = 0; k < q_.cols(); ++k) kq.col(k) = multiply_kernel(q_.col(k));
   const Eigen::MatrixXd inner = q_.transpose() * kq;
   half_update_ = kq - 0.5 * q_ * inner;
-  // The kernels vanish at r = 0, so all of the trace comes from the update.
-  const double trace = -2.0 * q_.cwiseProduct(half_update_).sum();
+  // All entries on the diagonal of the kernel are equal: 0, but for the least distance of the vector loops.
+  const double diagonal =
+      definiteness_sign(kernel) * kernel_product(kernel, points.leftCols(1), Eigen::VectorXd::Ones(1))(0);
+  const double trace = diagonal * scale.squaredNorm() - 2.0 * q_.cwiseProduct(half_update_).sum();
   const double size = inner.norm();
   const double rounding = 8.0 * std::numeric_limits<double>::epsilon() * (std::abs(trace) + size);
-  const bool nothing = !(trace > 1e3 * rounding) || trace < 1e-60;
+  const bool nothing = !(trace > 1e3 * rounding);
   mean_eigenvalue_ = nothing ? std::max(1.0, size) : trace / static_cast<double>(points.cols());
   smallest_smoothing_ = nothing ? mean_eigenvalue_ : rounding;
 }
