@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "engine/base/files.h"
 #include "engine/base/text.h"
-#include "engine/base/whole_file.h"
 #include "engine/import/table_parts.h"
 
 namespace palpate {

@@ -4,7 +4,7 @@
 #include <system_error>
 #include <utility>
 
-#include "engine/base/atomic_file.h"
+#include "engine/base/files.h"
 #include "engine/base/text.h"
 
 namespace palpate {

@@ -20,7 +20,7 @@
 #include <utility>
 #include <vector>
 
-#include "engine/base/atomic_file.h"
+#include "engine/base/files.h"
 #include "engine/base/result.h"
 
 namespace palpate {

@@ -280,20 +280,24 @@ double least_contact_N(const RecordingRow* rows, std::size_t count, double surfa
   return certain_force_N(noise_N);
 }
 
+RecordedContact::RecordedContact(const Recording& recording, const ForceModels& models, double surface_offset_m)
+    : offset_m_(surface_offset_m),
+      surface_m_(common_surface_m(models)),
+      least_N_(least_contact_N(recording.rows.data(), recording.rows.size(), surface_m_ + offset_m_)) {}
+
 ReplaySummary replay(const Recording& recording, const ForceModels& models, const ReplayVisitor& visitor,
                      double surface_offset_m, const Recording* after) {
   const std::vector<RecordingRow>& rows = recording.rows;
   ReplaySummary summary{identify_sensor(rows.data(), rows.size(), recording.columns)};
   HapticsTick tick(summary.sensor, models);
   if (after != nullptr) tick.start_after(*after);
-  const double surface_m = common_surface_m(models);
-  const double least_N = least_contact_N(rows.data(), rows.size(), surface_m + surface_offset_m);
+  const RecordedContact contact(recording, models, surface_offset_m);
   for (const RecordingRow& row : rows) {
     ToolSample sample = tool_sample(row);
     sample.position_m -= surface_offset_m;
     tick.step(sample);
     TickSnapshot snapshot = tick.assess();
-    snapshot.in_contact = sample.position_m > surface_m || std::abs(row.force_N) > least_N;
+    snapshot.in_contact = contact.at(row);
     ++summary.samples;
     if (snapshot.in_contact) ++summary.contact_samples;
     if (visitor) visitor(row, snapshot, tick);

@@ -12,6 +12,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <deque>
 #include <functional>
@@ -143,9 +144,7 @@ class HapticsTick {
 // Replays a recording through the tick of the live loop, without clock and device, as fast as possible. The same rows
 // and models give the same bits.
 //
-// For the visitor, a sample is in contact if it is beyond the surface, the outermost of those surfaces of the models
-// that are not at 0, or if the measured force exceeds both the JND at 0 N and five times its noise, because an adhesive
-// material also pulls outside. Thread guarantee: slow side; one thread at a time.
+// For the visitor, a sample is in contact as RecordedContact says. Thread guarantee: slow side; one thread at a time.
 
 // Called for each row after its tick: `snapshot` has the forces, `tick` the feature vectors. The references are valid
 // during the call.
@@ -161,6 +160,20 @@ struct ReplaySummary {
 // The measured force above which a sample is in contact, N (certain_force_N). The noise is that of the first rows of a
 // recording: the white noise or, if larger, the standard deviation before the first contact.
 double least_contact_N(const RecordingRow* rows, std::size_t count, double surface_m);
+
+// Which rows of a recording are in contact: those beyond the surface, the outermost of those surfaces of the models
+// that are not at 0, and those whose measured force exceeds both the JND at 0 N and five times its noise, because an
+// adhesive material also pulls outside. `surface_offset_m`: subtracted from every position.
+class RecordedContact {
+ public:
+  RecordedContact(const Recording& recording, const ForceModels& models, double surface_offset_m = 0.0);
+  bool at(const RecordingRow& row) const noexcept {
+    return row.position_m - offset_m_ > surface_m_ || std::abs(row.force_N) > least_N_;
+  }
+
+ private:
+  double offset_m_, surface_m_, least_N_;
+};
 
 // `models`: up to kMaxModels. `surface_offset_m` is subtracted from every position before the tick; the visitor
 // receives the row as recorded. `after`: the recording that this one continues (HapticsTick::start_after); null: none.

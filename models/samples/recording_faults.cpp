@@ -35,12 +35,6 @@ std::vector<Run> runs_of(const Rows& rows, Column column) {
   return runs;
 }
 
-double quantile_of(std::vector<double> values, double share) {
-  if (values.empty()) return 0.0;
-  const auto at = static_cast<std::size_t>(share * static_cast<double>(values.size() - 1));
-  return nth_smallest(std::move(values), at);
-}
-
 // The distance of a run to the nearer of its neighbours' values if it exceeds, or is below, both; else 0.
 double excursion(const std::vector<Run>& runs, std::size_t at) {
   const double before = runs[at].value - runs[at - 1].value, after = runs[at].value - runs[at + 1].value;
@@ -59,7 +53,8 @@ double scatter_beside(const Rows& rows, Column column, std::size_t at) {
   std::vector<double> distances;
   for (std::size_t i = std::max(at, kReach + 1) - kReach; i + 1 < std::min(rows.size(), at + kReach); ++i)
     distances.push_back(std::abs(rows[i].*column - 0.5 * (rows[i - 1].*column + rows[i + 1].*column)));
-  return quantile_of(std::move(distances), 0.75);
+  const std::size_t quartile = 3 * (distances.size() - 1) / 4;
+  return nth_smallest(std::move(distances), quartile);
 }
 
 std::vector<Run> dropouts(const Rows& rows, Column column, double noise, bool is_position) {
@@ -70,7 +65,7 @@ std::vector<Run> dropouts(const Rows& rows, Column column, double noise, bool is
   std::vector<double> of_rows = excursions;  // a row that repeats its value has none
   of_rows.resize(rows.size(), 0.0);
   // Six times the noise is exceeded by one row in 1e9 of white noise.
-  const double least = 6.0 * std::max(noise, quantile_of(std::move(of_rows), 0.9));
+  const double least = 6.0 * std::max(noise, quantile_of(std::move(of_rows), 90));
   const auto [low, high] = std::ranges::minmax(rows, {}, column);
   const double large = kLargeShare * (high.*column - low.*column);
   bool certain = false;
@@ -121,7 +116,7 @@ struct Updates {
 Updates updates_of(const Rows& rows, const std::vector<Run>& runs) {
   std::vector<double> changes;
   for (std::size_t i = 1; i < runs.size(); ++i) changes.push_back(std::abs(runs[i].value - runs[i - 1].value));
-  const double large = 1.5 * quantile_of(changes, 0.0);  // steps of the channel
+  const double large = 1.5 * quantile_of(changes, 0);  // steps of the channel
   Updates updates;
   for (std::size_t i = 1; i + 1 < runs.size(); ++i) {
     const Run& run = runs[i];
@@ -141,8 +136,8 @@ double update_rows(const Rows& rows, Column column, const std::vector<Run>& runs
   std::vector<double> lengths;
   // The first and the last run are incomplete.
   for (std::size_t i = 1; i + 1 < runs.size(); ++i) lengths.push_back(static_cast<double>(runs[i].end - runs[i].begin));
-  const double middle = quantile_of(updates.rows, 0.5);
-  const double shortest = quantile_of(lengths, 0.05);  // shorter ones are jitter
+  const double middle = quantile_of(updates.rows, 50);
+  const double shortest = quantile_of(lengths, 5);  // shorter ones are jitter
   if (!(shortest >= 2.0) || shortest + 1.0 < 0.75 * middle) return 0.0;
   // A tool that moves in steps explains the steps of a force.
   if (column == &RecordingRow::force_N && updates.inside_m < 0.25 * updates.across_m) return 0.0;

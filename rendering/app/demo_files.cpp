@@ -9,9 +9,8 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "engine/base/atomic_file.h"
+#include "engine/base/files.h"
 #include "engine/base/text.h"
-#include "engine/base/whole_file.h"
 #include "scenes/plot/plot.h"
 #include "scenes/scene/scene.h"
 

@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "engine/base/atomic_file.h"
+#include "engine/base/files.h"
 #include "engine/base/signals.h"
 #include "engine/base/text.h"
 #include "engine/live/pacer.h"

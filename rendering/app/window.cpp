@@ -14,7 +14,7 @@
 #include <utility>
 #include <vector>
 
-#include "engine/base/atomic_file.h"
+#include "engine/base/files.h"
 #include "engine/live/pacer.h"
 
 namespace palpate {

@@ -8,7 +8,7 @@
 #include <initializer_list>
 #include <utility>
 
-#include "engine/base/whole_file.h"
+#include "engine/base/files.h"
 
 namespace palpate {
 namespace {

@@ -1,4 +1,5 @@
-// palpate fit: fits a model to recordings and writes its file.
+// palpate fit: fits a model to recordings and writes its file. palpate export: writes a model as one self-contained C99
+// file.
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -11,15 +12,17 @@
 #include <utility>
 #include <vector>
 
-#include "engine/base/atomic_file.h"
+#include "engine/base/files.h"
 #include "engine/base/text.h"
 #include "engine/tick/haptics_tick.h"
 #include "models/check/check_recording.h"
+#include "models/export/export_c.h"
 #include "models/fit/fit.h"
 #include "models/model/file/model_io.h"
 #include "models/model/fitted_model.h"
 #include "scenes/cli/verbs.h"
 #include "scenes/evaluation/model_errors.h"
+#include "scenes/report/report.h"
 #include "scenes/scene/scene.h"
 
 namespace palpate::cli {
@@ -78,17 +81,6 @@ std::string training_contradiction(const std::vector<CheckedFile>& files, const 
          fixed(100.0 * printed, 2) + " % after correction";
 }
 
-// One row for each term of the trend's dictionary: whether the regression uses it, and the cross-validated error of the
-// trend with it and without it.
-void print_gains(const std::vector<PartGain>& gains) {
-  if (gains.empty()) return;
-  std::vector<std::vector<std::string>> rows{{"FEATURE OF THE TREND", "USED", "ERROR WITH IT [JND]", "WITHOUT"}};
-  for (const PartGain& one : gains)
-    rows.push_back({one.name, one.taken ? "yes" : "no", fixed(one.error_with, 3), fixed(one.error_without, 3)});
-  print_table(rows, true);
-  std::printf("\n");
-}
-
 void print_line(const char* label, const std::string& text) {
   std::printf("%-17s %s\n", label, printable(text, std::string::npos).c_str());
 }
@@ -125,7 +117,10 @@ std::string relaxation_bands(const std::vector<FeatureSpec>& features) {
 void print_fit(const PreparedTraining& prepared, const MethodFit& fit, double seconds, bool accelerometer,
                const std::string& out) {
   const Provenance& provenance = fit.data.provenance;
-  print_gains(prepared.gains);
+  if (!prepared.gains.empty()) {
+    print_table(table_text(gains_table(prepared.gains)), true);
+    std::printf("\n");
+  }
   print_line("model", fit.data.name + ", fitted in " + fixed(seconds, 2) + " s");
   if (const RbfFunction* const rbf = rbf_of(fit.data.correction); rbf != nullptr && fit.rank > 0) {
     print_line("centres", std::to_string(rbf->centre_count()) + ", rank " + std::to_string(fit.rank) + " of " +
@@ -238,6 +233,57 @@ void add_fit(CLI::App& app, Verbs& verbs) {
   verb->add_flag("--json", arguments->json, "Print one JSON object");
   verb->parse_complete_callback([arguments] { read_plan(*arguments); });
   verbs.emplace_back(verb, [arguments] { return run_fit_or_each(*arguments); });
+}
+
+namespace {
+
+struct ExportArguments {
+  std::string model, out;
+  double encoder_step_m = 0.0;
+  bool single_precision = false, force = false;
+};
+
+void print_summary(const ExportArguments& arguments, const ModelData& data, const SensorSpec& sensor,
+                   std::size_t bytes) {
+  std::printf("%s: %s in %s precision, %zu bytes of C\n", arguments.out.c_str(), data.name.c_str(),
+              arguments.single_precision ? "single" : "double", bytes);
+  std::printf(
+      "expects positions in steps of %g um with an additional noise of %g um (%s);\n"
+      "gives the forces of palpate replay without an accelerometer\n",
+      1e6 * sensor.encoder_step_m, 1e6 * sensor.position_noise_m,
+      arguments.encoder_step_m > 0.0 ? "from --encoder-step"
+      : data.sensor                  ? "from the model's recordings"
+                                     : "the model has no step of its recordings; see --encoder-step");
+}
+
+Status run_export(const ExportArguments& arguments) {
+  if (const Status status = refuse_input_as_output(arguments.out, {arguments.model}, "--c"); !status) return status;
+  const auto model = load_model_file(
+      arguments.model, "fit a model: palpate fit --recording " + shell_word(arguments.model) + " --out model.json");
+  if (!model) return model.error();
+  const ModelData& data = (*model)->data();
+  const SensorSpec sensor = sensor_with_step(data, arguments.encoder_step_m);
+  const std::string text = export_c(data, sensor, arguments.single_precision);
+  if (Status status = write_file_atomically(arguments.out, text, arguments.force); !status) return status;
+  print_summary(arguments, data, sensor, text.size());
+  return {};
+}
+
+}  // namespace
+
+void add_export(CLI::App& app, Verbs& verbs) {
+  CLI::App* command = app.add_subcommand("export", "Write a model as one self-contained C99 file");
+  const auto arguments = std::make_shared<ExportArguments>();
+  command->add_option("model", arguments->model, "Model file (JSON)")->required();
+  command->add_option("--c", arguments->out, "C file to write")->required();
+  command->add_flag("--float", arguments->single_precision, "Compute in single precision [double]");
+  command
+      ->add_option("--encoder-step", arguments->encoder_step_m,
+                   "Step of the positions in metres; 0: the step of the model's recordings")
+      ->check(number_from(0.0, 0.1))
+      ->capture_default_str();
+  command->add_flag("--force", arguments->force, "Replace an existing file");
+  verbs.emplace_back(command, [arguments] { return run_export(*arguments); });
 }
 
 }  // namespace palpate::cli

@@ -11,9 +11,8 @@
 #include <filesystem>
 #include <thread>
 
-#include "engine/base/atomic_file.h"
+#include "engine/base/files.h"
 #include "engine/base/text.h"
-#include "engine/base/whole_file.h"
 #include "scenes/cli/verbs.h"
 #include "scenes/report/publish.h"
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/base/atomic_file.h"
+#include "engine/base/files.h"
 #include "engine/base/text.h"
 #include "engine/import/import_table.h"
 #include "models/samples/samples.h"

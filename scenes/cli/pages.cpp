@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "engine/base/files.h"
 #include "engine/base/text.h"
-#include "engine/base/whole_file.h"
 #include "engine/tick/tool_sample.h"
 #include "scenes/cli/verbs.h"
 #include "scenes/hard/hard.h"
@@ -139,13 +139,7 @@ struct HardOptions {
 };
 
 void print_marks(const std::vector<HardRow>& rows) {
-  std::vector<std::vector<std::string>> lines{{"case"}};
-  for (const HardMethod& method : hard_methods()) lines.front().push_back(method.name);
-  for (const HardRow& row : rows) {
-    lines.push_back({row.of.name});
-    for (const HardCell& cell : row.cells) lines.back().push_back(cell_text(cell));
-  }
-  print_table(lines, true);
+  print_table(table_text(marks_table(rows)), true);
   std::printf(
       "\n%s\n✗: an error, a step or the energy breaks what must hold; !: that was not so before; the number is the "
       "percentage of the ticks in contact within one JND of the true force\n",

@@ -7,13 +7,14 @@
 #include <string>
 #include <vector>
 
-#include "engine/base/atomic_file.h"
+#include "engine/base/files.h"
 #include "engine/base/text.h"
 #include "engine/tick/haptics_tick.h"
 #include "models/samples/samples.h"
 #include "scenes/cli/verbs.h"
 #include "scenes/evaluation/evaluate.h"
 #include "scenes/plot/plot.h"
+#include "scenes/report/publish.h"
 #include "scenes/scene/scene.h"
 
 namespace palpate::cli {
@@ -27,9 +28,6 @@ struct Options {
   std::string after, out, plot;
   bool all = false, json = false, force = false;
 };
-
-// The output has a note if moving the surface changes the share within the JND by more.
-constexpr double kShareThatMatters = 0.005;
 
 struct ReplayedModel {
   LoadedModel loaded;
@@ -50,7 +48,7 @@ struct ReplayedRecording {
   std::vector<ReplayedModel> models;
 };
 
-// A figure of merit; null in JSON if there are no samples in contact.
+// A figure of merit; no number if there are no samples in contact.
 struct ErrorColumn {
   const char* key;
   const char* title;
@@ -59,9 +57,9 @@ struct ErrorColumn {
   int decimals;
   bool decides;  // shown without --all
 };
-constexpr ErrorColumn kFigures[] = {{"rms_error_N", "RMS mN", &ErrorSummary::rms_error_N, 1e3, 1, true},
-                                    {"max_error_N", "MAX mN", &ErrorSummary::max_error_N, 1e3, 1, false},
-                                    {"within_jnd", "WITHIN JND %", &ErrorSummary::within_jnd, 1e2, 2, true},
+constexpr ErrorColumn kFigures[] = {{"rms_error_N", "RMS mN", &ErrorSummary::rms_error_N, kInMilli, 1, true},
+                                    {"max_error_N", "MAX mN", &ErrorSummary::max_error_N, kInMilli, 1, false},
+                                    {"within_jnd", "WITHIN JND %", &ErrorSummary::within_jnd, kInPercent, 2, true},
                                     {"p99_error_over_jnd", "P99 JND", &ErrorSummary::p99_error_over_jnd, 1.0, 2, true},
                                     {"max_error_over_jnd", "MAX JND", &ErrorSummary::max_error_over_jnd, 1.0, 2, true}};
 
@@ -78,62 +76,69 @@ std::vector<std::string> outputs(const std::string& path, const std::vector<std:
   return paths;
 }
 
-OrderedJson number_or_null(bool known, double value) { return known ? OrderedJson(value) : OrderedJson(nullptr); }
-
-OrderedJson bins_json(const std::vector<ForceBin>& bins) {
-  OrderedJson list = OrderedJson::array();
-  for (const ForceBin& bin : bins) {
-    list.push_back({{"force_from_N", bin.force_from_N},
-                    {"force_to_N", bin.force_to_N},
-                    {"count", bin.force_N.count()},
-                    {"mean_abs_error_N", bin.error_N.mean()},
-                    {"std_abs_error_N", bin.error_N.deviation()},
-                    {"max_abs_error_N", bin.error_N.largest()},
-                    {"jnd_N", bin.jnd_N}});
+// One row for each model, for --json and the terminal. `all`: all figures are on the terminal.
+Table models_table(const ReplayedRecording& replayed, bool all) {
+  Table table{"models"};
+  for (const ReplayedModel& one : replayed.models) {
+    const auto& [name, model] = one.loaded;
+    const auto add = [&](const std::string& key, const std::string& title, TableCell cell, double scale = 1.0,
+                         int decimals = 0) {
+      table.add({key, all ? title : "", scale, decimals}, std::move(cell));
+    };
+    const auto add_errors = [&](const std::string& group, const char* before, const ErrorSummary& errors) {
+      for (const ErrorColumn& figure : kFigures) {
+        const bool shown = before != nullptr && (all || (group.empty() && figure.decides));
+        table.add({group + figure.key, shown ? std::string(before) + figure.title : "", figure.scale, figure.decimals},
+                  errors.samples > 0 ? errors.*figure.value : kNoNumber);
+      }
+    };
+    const auto time = [&](double time_ns) { return one.time.measured ? time_ns : kNoNumber; };
+    table.begin_row();
+    table.add({"name", "MODEL"}, name);
+    add("method", "", model->method());
+    add("centres", "CENTRES", model->centre_count());
+    add("began", "", one.began);
+    add_errors("", "", one.as_recorded);
+    add("out_of_domain_samples", "OUT OF DOMAIN", one.as_recorded.out_of_domain_samples);
+    add("evaluation_ns.median", "", time(one.time.evaluation.median_ns));
+    add("evaluation_ns.p99", "", time(one.time.evaluation.p99_ns));
+    table.add({"tick_ns.median", "TICK ns", 1.0, 0}, time(one.time.tick.median_ns));
+    add("tick_ns.p99", "TICK P99 ns", time(one.time.tick.p99_ns));
+    add_errors("surface_moved.", "ALIGNED ", one.surface_moved);
+    add_errors("force_zeroed.", nullptr, one.force_zeroed);
+    add("surface_offset_m", "SURFACE mm", one.surface.at, kInMilli, 3);
+    add("", "+- mm", one.surface.identified ? one.surface.standard_error : kNoNumber, kInMilli, 3);
+    add("beginning_moved.offset_m", "", one.beginning_m);
+    add_errors("beginning_moved.", nullptr, one.beginning_moved);
+    add("", "BEGINNING MOVED WITHIN JND %", one.beginning_m != 0.0 ? one.beginning_moved.within_jnd : kNoNumber,
+        kInPercent, 2);
+    add("surface_identified", "", one.surface.identified);
+    add("predicted_error.bound_95_held", "WITHIN BOUND %", one.bound.coverage, kInPercent, 1);
+    add("predicted_error.bound_95_held_moved", "ALIGNED WITHIN BOUND %", one.bound_moved.coverage, kInPercent, 1);
+    add("predicted_error.median_bound_N", "", one.bound.median_N);
+    add("predicted_error.median_bound_over_jnd", "BOUND JND", one.bound.median_over_jnd, 1.0, 2);
   }
-  return list;
-}
-
-void add_figures(OrderedJson& object, const ErrorSummary& errors) {
-  for (const ErrorColumn& figure : kFigures)
-    object[figure.key] = number_or_null(errors.samples > 0, errors.*figure.value);
-}
-
-OrderedJson model_json(const ReplayedModel& replayed) {
-  const auto& [name, model] = replayed.loaded;
-  OrderedJson object = {{"name", name}, {"method", model->method()}, {"centres", model->centre_count()}};
-  object["began"] = replayed.began;
-  add_figures(object, replayed.as_recorded);
-  object["out_of_domain_samples"] = replayed.as_recorded.out_of_domain_samples;
-  for (const auto& [key, time] :
-       {std::pair{"evaluation_ns", replayed.time.evaluation}, {"tick_ns", replayed.time.tick}}) {
-    object[key] = {{"median", number_or_null(replayed.time.measured, time.median_ns)},
-                   {"p99", number_or_null(replayed.time.measured, time.p99_ns)}};
-  }
-  add_figures(object["surface_moved"], replayed.surface_moved);
-  object["force_zeroed"] = nullptr;
-  if (replayed.force_zeroed.samples > 0) add_figures(object["force_zeroed"], replayed.force_zeroed);
-  object["surface_offset_m"] = replayed.surface.at;
-  object["beginning_moved"] = nullptr;
-  if (replayed.beginning_m != 0.0) {
-    object["beginning_moved"] = {{"offset_m", replayed.beginning_m}};
-    add_figures(object["beginning_moved"], replayed.beginning_moved);
-  }
-  object["surface_identified"] = replayed.surface.identified;
-  object["predicted_error"] = nullptr;
-  if (replayed.bound.has_bounds()) {  // JSON has null for NaN
-    object["predicted_error"] = {{"bound_95_held", replayed.bound.coverage},
-                                 {"bound_95_held_moved", replayed.bound_moved.coverage},
-                                 {"median_bound_N", replayed.bound.median_N},
-                                 {"median_bound_over_jnd", replayed.bound.median_over_jnd}};
-  }
-  object["bins"] = bins_json(replayed.as_recorded.bins);
-  return object;
+  return table;
 }
 
 OrderedJson recording_json(const ReplayedRecording& replayed) {
-  OrderedJson list = OrderedJson::array();
-  for (const ReplayedModel& one : replayed.models) list.push_back(model_json(one));
+  OrderedJson list = table_json(models_table(replayed, true));
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    const ReplayedModel& one = replayed.models[i];
+    if (one.force_zeroed.samples == 0) list[i]["force_zeroed"] = nullptr;
+    if (one.beginning_m == 0.0) list[i]["beginning_moved"] = nullptr;
+    if (!one.bound.has_bounds()) list[i]["predicted_error"] = nullptr;
+    OrderedJson& bins = list[i]["bins"] = OrderedJson::array();
+    for (const ForceBin& bin : one.as_recorded.bins) {
+      bins.push_back({{"force_from_N", bin.force_from_N},
+                      {"force_to_N", bin.force_to_N},
+                      {"count", bin.force_N.count()},
+                      {"mean_abs_error_N", bin.error_N.mean()},
+                      {"std_abs_error_N", bin.error_N.deviation()},
+                      {"max_abs_error_N", bin.error_N.largest()},
+                      {"jnd_N", bin.jnd_N}});
+    }
+  }
   return {{"recording", replayed.path},
           {"samples", replayed.samples},
           {"contact_samples", replayed.contact_samples},
@@ -142,41 +147,13 @@ OrderedJson recording_json(const ReplayedRecording& replayed) {
           {"models", list}};
 }
 
-std::vector<std::pair<std::string, std::string>> table_cells(const ReplayedModel& model, bool all) {
-  std::vector<std::pair<std::string, std::string>> cells{{"MODEL", model.loaded.name}};
-  const auto add = [&](const std::string& title, bool known, double value, int decimals) {
-    cells.emplace_back(title, known ? fixed(value, decimals) : "-");
-  };
-  const auto add_errors = [&](const std::string& before, const ErrorSummary& errors) {
-    for (const ErrorColumn& figure : kFigures)
-      if (all || figure.decides)
-        add(before + figure.title, errors.samples > 0, figure.scale * (errors.*figure.value), figure.decimals);
-  };
-  add_errors("", model.as_recorded);
-  add("TICK ns", model.time.measured, model.time.tick.median_ns, 0);
-  if (!all) return cells;
-  add("TICK P99 ns", model.time.measured, model.time.tick.p99_ns, 0);
-  cells.emplace_back("CENTRES", std::to_string(model.loaded.model->centre_count()));
-  cells.emplace_back("OUT OF DOMAIN", std::to_string(model.as_recorded.out_of_domain_samples));
-  cells.emplace_back("SURFACE mm", model.surface.identified ? fixed(1e3 * model.surface.at, 3) + " +- " +
-                                                                  fixed(1e3 * model.surface.standard_error, 3)
-                                                            : "not identified");
-  add_errors("ALIGNED ", model.surface_moved);
-  add("BEGINNING MOVED WITHIN JND %", model.beginning_m != 0.0, 1e2 * model.beginning_moved.within_jnd, 2);
-  add("WITHIN BOUND %", model.bound.has_bounds(), 1e2 * model.bound.coverage, 1);
-  add("ALIGNED WITHIN BOUND %", model.bound.has_bounds(), 1e2 * model.bound_moved.coverage, 1);
-  add("BOUND JND", std::isfinite(model.bound.median_over_jnd), model.bound.median_over_jnd, 2);
-  if (model.bound.has_bounds() && cells.back().second == "-") cells.back().second = "not known";
-  return cells;
-}
-
 // The largest change of a share within the JND by moving the surface, unless it is small.
 void print_surface_note(const std::vector<ReplayedModel>& models) {
   const auto change = [](const ReplayedModel& one) {
     return std::abs(one.surface_moved.within_jnd - one.as_recorded.within_jnd);
   };
   const ReplayedModel& most = *std::ranges::max_element(models, {}, change);
-  if (change(most) <= kShareThatMatters) return;
+  if (change(most) <= kLeastShare) return;
   std::printf(
       "note: the surface of this recording is at %+.3f mm for %.64s, which changes the figures: "
       "%.2f %% within the JND and %.1f mN RMS as recorded, %.2f %% and %.1f mN with the surface aligned; "
@@ -224,16 +201,7 @@ void print_recording(const ReplayedRecording& replayed, bool all) {
     std::printf("; its free air reads %+.3g N: forces counted from there, %.64s has %.2f %% within the JND",
                 replayed.force_zero_N, first.loaded.name.c_str(), 1e2 * first.force_zeroed.within_jnd);
   std::printf("\n");
-  std::vector<std::vector<std::string>> rows(1);
-  for (const ReplayedModel& one : replayed.models) {
-    const bool first = rows.size() == 1;
-    rows.emplace_back();
-    for (auto& [title, cell] : table_cells(one, all)) {
-      if (first) rows.front().push_back(std::move(title));
-      rows.back().push_back(std::move(cell));
-    }
-  }
-  print_table(rows, true);
+  print_table(table_text(models_table(replayed, all)), true);
   print_beginning_note(replayed.models);
   print_surface_note(replayed.models);
   print_preload_note(replayed.models);
@@ -390,7 +358,7 @@ Status run(const Options& options) {
     const auto place = [](const std::string& path) { return fs::absolute(path).lexically_normal(); };
     if (!forces[i].empty() && place(plots[i]) == place(forces[i]))
       throw CLI::ValidationError("--plot", "found " + plots[i] + ", the file of --out, expected another file");
-    if (const Status status = check_plot_path(plots[i], options.force); !status) return status;
+    if (const auto trial = AtomicFile::create(plots[i], options.force); !trial) return trial.error();
   }
   const auto models = load_models(options.models, options.names);
   if (!models) return models.error();
@@ -448,13 +416,7 @@ void add_replay(CLI::App& app, Verbs& verbs) {
       ->add_option("--plot", options->plot,
                    "Figure to draw (.svg or .png): force, errors in JND, and errors over force; for several "
                    "recordings PLOT_RECORDING")
-      ->check(CLI::Validator(
-          [](const std::string& path) {
-            return path.ends_with(".svg") || path.ends_with(".png")
-                       ? std::string()
-                       : "found " + path + ", expected a file that ends in .svg or .png";
-          },
-          ""));
+      ->check(CLI::Validator(plot_ending_error, ""));
   command->add_option("--out", options->out,
                       "File to write (CSV): features and forces of every row; for several recordings OUT_RECORDING");
   command->add_flag("--all", options->all, "Print all figures, also with the surface aligned to this recording");

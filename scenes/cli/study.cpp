@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/base/atomic_file.h"
+#include "engine/base/files.h"
 #include "models/fit/fit.h"
 #include "scenes/cli/verbs.h"
 #include "scenes/study/study_analysis.h"

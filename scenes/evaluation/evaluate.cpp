@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 
+#include "engine/base/statistics.h"
 #include "engine/base/text.h"
 #include "engine/tick/features.h"
 #include "engine/tick/haptics_tick.h"
@@ -224,11 +225,6 @@ void add_blocks(std::size_t count, std::vector<double>& means_ns, const Step& st
   }
 }
 
-// The percentile by nearest rank. `sorted` is in ascending order.
-double percentile(const std::vector<double>& sorted, std::size_t percent) {
-  return sorted[(sorted.size() * percent + 99) / 100 - 1];
-}
-
 // The mean times of one model's blocks of calls, in one round over all samples.
 struct Round {
   std::vector<double> tick_ns;
@@ -265,8 +261,6 @@ Round time_round(const ModelPointer& model, const std::vector<TimedSamples>& str
   // The forces must be used, or the compiler may remove the calls.
   volatile double wanted = force_N;
   static_cast<void>(wanted);
-  std::sort(round.tick_ns.begin(), round.tick_ns.end());
-  std::sort(round.evaluation_ns.begin(), round.evaluation_ns.end());
   return round;
 }
 
@@ -278,15 +272,12 @@ std::vector<TimedSamples> own_strokes(const ForceModel& model) {
 }
 
 Timing timing_of(const std::vector<Round>& rounds, std::vector<double> Round::*times) {
-  std::vector<double> medians;
-  std::vector<double> p99s;
+  std::vector<double> medians, p99s;
   for (const Round& round : rounds) {
-    medians.push_back(percentile(round.*times, 50));
-    p99s.push_back(percentile(round.*times, 99));
+    medians.push_back(quantile_of(round.*times, 50));
+    p99s.push_back(quantile_of(round.*times, 99));
   }
-  std::sort(medians.begin(), medians.end());
-  std::sort(p99s.begin(), p99s.end());
-  return {percentile(medians, 50), medians.front(), medians.back(), percentile(p99s, 50)};
+  return {quantile_of(medians, 50), quantile_of(medians, 0), quantile_of(medians, 100), quantile_of(p99s, 50)};
 }
 
 }  // namespace

@@ -7,19 +7,13 @@
 #include <utility>
 
 #include "engine/base/random_stream.h"
+#include "engine/base/statistics.h"
 #include "engine/base/text.h"
 
 namespace palpate {
 namespace {
 
 constexpr double kOneSided = 0.05;  // probability beyond a one-sided bound; beyond each end of an interval: half
-
-// The value of this rank, from 0 in ascending order.
-double ranked(std::vector<float> values, std::size_t rank) {
-  const auto nth = values.begin() + static_cast<std::ptrdiff_t>(rank);
-  std::nth_element(values.begin(), nth, values.end());
-  return static_cast<double>(*nth);
-}
 
 // P(|T| <= t) of Student's t distribution. Source: Abramowitz & Stegun (1972), 26.7.3 and 26.7.4.
 double central_probability(double t, std::size_t degrees) {
@@ -215,7 +209,7 @@ void ModelErrors::add(double model_N, double measured_N, bool out_of_domain, dou
 
 ErrorSummary ModelErrors::summary() const {
   ErrorSummary summary = figures_.summary(jnd_);
-  if (summary.samples > 0) summary.p99_error_over_jnd = ranked(ratios_, (ratios_.size() * 99 + 99) / 100 - 1);
+  summary.p99_error_over_jnd = static_cast<double>(quantile_of(ratios_, 99));
   return summary;
 }
 
@@ -249,10 +243,9 @@ UnitErrors ModelErrors::unit_errors() const {
 BoundFigures ModelErrors::bounds() const {
   // Outside its surface a model returns 0 N with certainty, whether it has a bound or not.
   if (std::ranges::none_of(bounds_N_, [](float bound_N) { return bound_N > 0.0F; })) return {};
-  const std::size_t middle = bounds_N_.size() / 2;
-  const double median_N = ranked(bounds_N_, middle);
+  const auto median_N = static_cast<double>(median_of(bounds_N_));
   return {static_cast<double>(covered_) / static_cast<double>(bounds_N_.size()), median_N,
-          median_N <= largest_force_N_ ? ranked(bounds_over_jnd_, middle) : kUnknown};
+          median_N <= largest_force_N_ ? static_cast<double>(median_of(bounds_over_jnd_)) : kUnknown};
 }
 
 Ranking rank(const std::vector<Candidate>& candidates, double budget_ns) {

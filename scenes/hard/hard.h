@@ -27,6 +27,7 @@
 #include "engine/live/live_tick.h"
 #include "models/fit/fit.h"
 #include "scenes/material/material.h"
+#include "scenes/report/publish.h"
 
 namespace palpate {
 
@@ -150,9 +151,9 @@ std::vector<std::string> missed_cells(const std::vector<HardRow>& rows);
 std::string hard_answer(const std::vector<HardRow>& rows);
 // One object for each cell, with every figure.
 nlohmann::ordered_json hard_json(const std::vector<HardRow>& rows);
-// "✓ 99.8" or "✗ 45.1": whether the cell is broken, and the percentage within the JND, or "refused"; with "!" where it
-// is not as expected.
-std::string cell_text(const HardCell& cell);
+// A row for each case, of one kind or of all, and a column for each method: "✓ 99.8" or "✗ 45.1" is whether the cell is
+// broken, and the percentage within the JND, or "refused"; with "!" where it is not as expected.
+Table marks_table(const std::vector<HardRow>& rows, std::optional<HardKind> kind = {});
 
 // Writes the page, its tables and report.json into the folder `out`. Errors: those of ReportFolder and write_report.
 struct HardPage {

@@ -7,8 +7,7 @@
 #include <sstream>
 #include <utility>
 
-#include "engine/base/atomic_file.h"
-#include "engine/base/whole_file.h"
+#include "engine/base/files.h"
 #include "engine/json/json_fields.h"
 
 namespace palpate {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "engine/base/statistics.h"
 #include "engine/base/text.h"
 #include "engine/import/import_table.h"
 #include "models/samples/samples.h"
@@ -71,9 +72,7 @@ bool limit_hand(const std::vector<Recording>& recordings, HandSettings& hand) {
   hand.strongest_press_N = kInside * strongest_N;
   if (deepest_m > 0.0) hand.deepest_m = kInside * deepest_m;
   if (speeds_m_per_s.empty()) return true;
-  const auto fast = speeds_m_per_s.begin() + static_cast<std::ptrdiff_t>(99 * (speeds_m_per_s.size() - 1) / 100);
-  std::nth_element(speeds_m_per_s.begin(), fast, speeds_m_per_s.end());
-  hand.fastest_m_per_s = kInside * *fast;
+  hand.fastest_m_per_s = kInside * quantile_of(std::move(speeds_m_per_s), 99);
   return true;
 }
 

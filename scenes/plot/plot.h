@@ -164,9 +164,9 @@ Status find_gnuplot();
 Status draw_plots(const std::string& folder, const std::vector<Plot>& plots);
 
 // Draws one plot into the file `path`, which ends in .svg or .png. Writes the whole file or nothing. Errors: those of
-// check_plot_path and draw_plots.
+// plot_ending_error, AtomicFile::create and draw_plots.
 Status draw_plot(const Plot& plot, const std::string& path, bool overwrite);
-// Errors: `path` does not end in .svg or .png; those of AtomicFile::create.
-Status check_plot_path(const std::string& path, bool overwrite);
+// What is wrong with the ending of `path`; empty: nothing.
+std::string plot_ending_error(const std::string& path);
 
 }  // namespace palpate

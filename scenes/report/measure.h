@@ -29,7 +29,6 @@ namespace palpate {
 // test. `share`: of both durations. Errors: those of record_sensors.
 Result<std::vector<PreparedRecordingPointer>> virtual_recordings(const std::string& material, double share = 1.0);
 
-inline bool is_pressed(const RecordingRow& row) { return row.position_m > 0.0; }
 inline double largest_force_N(const Recording& recording) {
   return std::ranges::max_element(recording.rows, {}, &RecordingRow::force_N)->force_N;
 }
@@ -50,7 +49,7 @@ struct RecordingSet {
   bool is_tested(std::size_t i) const { return i >= trained || trained == all.size(); }
 };
 
-// Equal forces in this number of successive rows, kLeakValues (recordings.cpp) different ones or more, are a leak.
+// Equal forces in this number of successive rows, kLeakValues (measure.cpp) different ones or more, are a leak.
 inline constexpr std::size_t kLeakRows = 50;
 
 struct SharedStretch {
@@ -141,9 +140,10 @@ struct ReportData {
   RecordingSet recordings;
   const Recording* after = nullptr;  // the recording that the tests continue
   std::vector<TestedRecording> tested;
-  NoiseFloor floor;                       // of all test recordings together
-  std::vector<ModelResult> models;        // the first is always 0 N; no two have the same forces
-  Ranking choice;                         // of `models`
+  std::map<const PreparedRecording*, std::ptrdiff_t> contact;  // rows of each recording in contact, as its errors count
+  NoiseFloor floor;                                            // of all test recordings together
+  std::vector<ModelResult> models;                             // the first is always 0 N; no two have the same forces
+  Ranking choice;                                              // of `models`
   TestCurves curves;                      // of the recording with the worst stretch of the recommended model
   std::vector<RecordingOffset> surfaces;  // of the training recordings; this and the following: of the first fold
   std::vector<double> papers_times_s;     // relaxation times identified for the methods on the measured force

@@ -9,9 +9,8 @@
 #include <system_error>
 #include <utility>
 
-#include "engine/base/atomic_file.h"
+#include "engine/base/files.h"
 #include "engine/base/text.h"
-#include "engine/base/whole_file.h"
 #include "scenes/scene/scene.h"
 
 namespace palpate {
@@ -171,7 +170,9 @@ nlohmann::ordered_json table_json(const Table& table) {
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
   for (const auto& row : table.rows) {
     nlohmann::ordered_json object = nlohmann::ordered_json::object();
-    for (std::size_t i = 0; i < row.size(); ++i) object[table.columns[i].key] = row[i];  // not finite: null
+    for (std::size_t i = 0; i < row.size(); ++i)  // a number that is not finite is written as null
+      if (const std::string& key = table.columns[i].key; !key.empty())
+        object[nlohmann::ordered_json::json_pointer("/" + replaced(key, ".", "/"))] = row[i];
     list.push_back(std::move(object));
   }
   return list;

@@ -65,7 +65,7 @@ struct Table {
 // Numbers read back as the same doubles; text is quoted where needed (RFC 4180).
 std::string table_csv(const Table& table);
 
-// A list of objects, one per row.
+// A list of objects, one per row. A key "a.b" is the member b of an object a; a column without a key is left out.
 nlohmann::ordered_json table_json(const Table& table);
 
 // The cells as on the page, the titles first.

@@ -11,8 +11,8 @@
 #include <optional>
 #include <thread>
 
+#include "engine/base/files.h"
 #include "engine/base/text.h"
-#include "engine/base/whole_file.h"
 #include "models/model/file/model_io.h"
 #include "scenes/evaluation/model_errors.h"
 #include "scenes/scene/scene.h"

@@ -19,6 +19,10 @@ namespace palpate {
 // The first table of the page, which the terminal shows too: the models of headline_models.
 Table headline_table(const ReportData& data);
 
+// The terms of the trend's dictionary: whether the regression uses each, and the cross-validated error of the trend
+// with it and without it.
+Table gains_table(const std::vector<PartGain>& gains);
+
 // All numbers of a report: the tables models, recordings, force_bins, features and times.
 std::vector<Table> make_tables(const ReportData& data);
 

@@ -12,8 +12,8 @@
 #include <map>
 #include <vector>
 
+#include "engine/base/files.h"
 #include "engine/base/text.h"
-#include "engine/base/whole_file.h"
 #include "engine/json/json_fields.h"
 #include "models/fit/fit.h"
 #include "scenes/material/material.h"

@@ -13,10 +13,9 @@
 #include <string_view>
 #include <utility>
 
-#include "engine/base/atomic_file.h"
+#include "engine/base/files.h"
 #include "engine/base/random_stream.h"
 #include "engine/base/text.h"
-#include "engine/base/whole_file.h"
 
 namespace palpate {
 

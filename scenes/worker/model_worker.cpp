@@ -9,9 +9,8 @@
 #include <system_error>
 #include <utility>
 
-#include "engine/base/atomic_file.h"
+#include "engine/base/files.h"
 #include "engine/base/text.h"
-#include "engine/base/whole_file.h"
 #include "engine/live/pacer.h"
 #include "engine/tick/haptics_tick.h"
 #include "models/correction/methods.h"

@@ -10,9 +10,8 @@
 #include <utility>
 #include <vector>
 
-#include "engine/base/atomic_file.h"
+#include "engine/base/files.h"
 #include "engine/base/text.h"
-#include "engine/base/whole_file.h"
 #include "engine/json/json_fields.h"
 #include "models/model/correction.h"
 #include "models/model/file/model_description.h"

@@ -11,10 +11,9 @@
 #include <functional>
 #include <limits>
 
-#include "engine/base/atomic_file.h"
+#include "engine/base/files.h"
 #include "engine/base/random_stream.h"
 #include "engine/base/signals.h"
-#include "engine/base/whole_file.h"
 #include "tests/support/message_parts.h"
 #include "tests/support/temporary_folder.h"
 

@@ -103,7 +103,7 @@ TEST_F(FitVerb, SaysWhatWasSelectedAndWhatComesNext) {
   EXPECT_EQ(force.out.find("FEATURE"), std::string::npos) << "there is no dictionary of features";
   const ProgramRun trend = fit({"--force"}, "trend");
   expect_model(trend);
-  EXPECT_TRUE(has_parts(trend.out, {"FEATURE OF THE TREND", "USED", "model", "trend, fitted in"}));
+  EXPECT_TRUE(has_parts(trend.out, {"feature", "used", "model", "trend, fitted in"}));
   const std::string silicone = folder_.file("silicone.csv");
   must_run({"synth", "--material", "silicone", "--seconds", "20", "--out", silicone});
   EXPECT_TRUE(has_parts(fit({"--force", "--recording", silicone}, "trend").out,

@@ -89,6 +89,7 @@ TEST_F(ReportVerb, TheAnswerIsOneLineAndItsModelIsWritten) {
     if (row["model"] == timings["recommended"] && row["seeds"] == 1) {
       EXPECT_EQ(row["p99_error_over_jnd"], model["p99_error_over_jnd"]);
       EXPECT_EQ(row["contact_samples"], Json::parse(ran.out)["contact_samples"]) << "one definition of contact";
+      EXPECT_EQ(row["contact_samples"], json_of(out())["tables"]["recordings"].back()["contact_samples"]);
     }
 }
 

@@ -4,7 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "engine/base/whole_file.h"
+#include "engine/base/files.h"
 #include "scenes/scene/scene.h"
 #include "tests/support/message_parts.h"
 #include "tests/support/temporary_folder.h"

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "engine/base/whole_file.h"
+#include "engine/base/files.h"
 #include "tests/support/message_parts.h"
 #include "tests/support/run_program.h"
 #include "tests/support/temporary_folder.h"

@@ -1,7 +1,10 @@
-// Files that appear under their final name only when they are complete.
-// Thread guarantee: slow side only.
+// Files: written so that they appear under their final name only when they are complete, and read whole.
+// Thread guarantee: slow side only (does I/O).
 #pragma once
 
+#include <istream>
+#include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -58,5 +61,20 @@ class AtomicFile {
 
 // Writes `text` to `path` atomically. Errors: those of AtomicFile.
 Status write_file_atomically(const std::string& path, std::string_view text, bool overwrite);
+
+// Opens a regular file for reading; a pipe or a device could block or never end.
+// `expected`: "a model file", for messages; `or_else`: further advice if there is no such file, ", or ...". Errors: no
+// such file, a folder, a pipe or a device, no permission.
+Result<std::unique_ptr<std::istream>> open_plain_file(const std::string& path, const std::string& expected,
+                                                      const std::string& or_else = "");
+// The error of a stream that cannot be read, by errno.
+Error unreadable(const std::string& path);
+// The limit for all files except models and recordings.
+inline constexpr std::size_t kSmallFileBytes = std::size_t{64} << 20;
+// Reads all bytes. Errors: as above, a file that cannot be read, and a file beyond `most_bytes`.
+Result<std::string> read_plain_file(const std::string& path, const std::string& expected,
+                                    const std::string& or_else = "", std::size_t most_bytes = kSmallFileBytes);
+// Reads all bytes; none if the file cannot be read for any reason.
+std::optional<std::string> read_whole_file(const std::string& path);
 
 }  // namespace palpate
