@@ -28,9 +28,6 @@
 namespace palpate::cli {
 namespace {
 
-// If the share within the JND differs by more in a replay of the training, the output explains why.
-constexpr double kContradiction = 0.005;
-
 struct FitArguments {
   std::vector<std::string> recordings;
   std::vector<OptionText> options;
@@ -76,7 +73,7 @@ std::string training_contradiction(const std::vector<CheckedFile>& files, const 
     });
   }
   const double printed = data.provenance.training_within_jnd;
-  if (!(std::abs(errors.within_jnd() - printed) > kContradiction)) return {};
+  if (!(std::abs(errors.within_jnd() - printed) > kLeastShare)) return {};
   return "in training, " + fixed(100.0 * errors.within_jnd(), 2) + " % within one JND as recorded, " +
          fixed(100.0 * printed, 2) + " % after correction";
 }

@@ -429,11 +429,10 @@ std::vector<Figure> paper_figures(const PaperData& data) {
   return {
       dimension_figure(data),
       jnd_figure(data),
-      bins_figure(data, 4, "mean plus standard deviation of the absolute error", false,
-                  [](const ForceBin& bin) { return bin.error_N.mean() + bin.error_N.deviation(); }),
+      bins_figure(data, 4, "mean plus standard deviation of the absolute error", false, spread),
       bins_figure(data, 5, "mean plus standard deviation of the relative error", true,
                   [](const ForceBin& bin) { return bin.relative.mean() + bin.relative.deviation(); }),
-      bins_figure(data, 6, "maximum absolute error", false, [](const ForceBin& bin) { return bin.error_N.largest(); }),
+      bins_figure(data, 6, "maximum absolute error", false, largest),
       bins_figure(data, 7, "maximum relative error", true, [](const ForceBin& bin) { return bin.relative.largest(); }),
       sites_figure(data)};
 }

@@ -41,7 +41,7 @@ constexpr const char* kCompiler = "g++ " __VERSION__;
 #endif
 
 // Another zero is named where moving the surface raises the share within the JND by more than this.
-constexpr double kShareThatMatters = 0.05;
+constexpr double kOtherZeroShare = 0.05;
 constexpr double kStudiedUpTo_N = 2.5;  // Hoever & Harders (2009), section 4.1
 
 // Two decimals, rounded down: 99.996 % is "99.99 %".
@@ -70,7 +70,7 @@ std::optional<OtherZero> other_zero(const ReportData& data) {
       data.tested, {}, [](const TestedRecording& one) { return std::abs(one.surface.minimum_at); });
   const OffsetEstimate& surface = farthest->surface;
   const bool ambiguous = std::abs(surface.force_offset_N) > data.scene.jnd.at(0.0);
-  if (use.moved.within_jnd - use.errors.within_jnd < kShareThatMatters &&
+  if (use.moved.within_jnd - use.errors.within_jnd < kOtherZeroShare &&
       !(ambiguous && use.errors.within_jnd < kGoodShare))
     return {};
   OtherZero found{farthest->recording->recording.name};
