@@ -11,6 +11,7 @@
 #include <cstddef>
 #include <cstdio>
 #include <exception>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -111,8 +112,7 @@ void keep_on_screen(GLFWwindow* handle) {
 // The display asks for no scale, or for one that no display has.
 bool scale_is_usable(float scale) { return scale > 0.2F && scale < 10.0F; }
 
-}  // namespace
-
+// Whether OpenGL is a program instead of a graphics card. `renderer`: its name as OpenGL reports it.
 bool is_software(std::string_view renderer) noexcept {
   // The software renderers of Mesa (three), Microsoft and Apple.
   for (const std::string_view program : {"llvmpipe", "softpipe", "SWR", "GDI Generic", "Software"}) {
@@ -120,6 +120,8 @@ bool is_software(std::string_view renderer) noexcept {
   }
   return false;
 }
+
+}  // namespace
 
 Status Window::find_display() {
   glfwSetErrorCallback(keep_problem);
