@@ -33,16 +33,11 @@ double eased_scale(double scale, double wanted) {
 Range single(float value) { return {value, value}; }
 Range around(double middle, double half) { return {middle - half, middle + half}; }
 
-// The end of the range with the larger magnitude.
-double farther(const Range& range) { return -range.from > range.to ? range.from : range.to; }
-
 // A quantity of a model in a column.
 using SlotRange = Range (*)(const CurveColumn& column, std::size_t slot);
 
 Range force_of(const CurveColumn& column, std::size_t slot) { return single(column.tick.force_N[slot]); }
-Range difference_of(const CurveColumn& column, std::size_t slot) {
-  return {column.low_over_jnd[slot], column.high_over_jnd[slot]};
-}
+Range sustained_of(const CurveColumn& column, std::size_t slot) { return single(column.sustained_over_jnd[slot]); }
 
 struct Drawing {
   const WindowView& shown;
@@ -108,7 +103,9 @@ struct Drawing {
     } else {
       quiet_words("outside the band most people notice it");
     }
-    tip("Model minus reference, in just noticeable differences: inside the band few people notice it.");
+    tip("Model minus reference, mean over 50 ms, in just noticeable differences: inside the band few people notice "
+        "it.\n"
+        "Faint marks: single ticks outside.");
   }
 
   void draw_curves(const TimePlot& plot, SlotRange range) const {
@@ -130,7 +127,7 @@ struct Drawing {
     };
     if (under != nullptr) read("reference", reference(), under->tick.reference_N, " N");
     for (const std::size_t slot : models().listed()) {
-      if (under != nullptr) read(models().slots[slot].name, colour(slot), farther(range(*under, slot)), unit);
+      if (under != nullptr) read(models().slots[slot].name, colour(slot), range(*under, slot).to, unit);
     }
     plot.draw_readings(readings);
   }
@@ -204,8 +201,12 @@ struct Drawing {
     plot.jnd_band(-1.0, 1.0);
     fill_prediction(plot, [&](const CurveColumn& column) { return around(0.0, predicted_over_jnd(column)); });
     if (!predicts()) plot.level(0.0, ink(reference()), kReferenceLine_px * scale());
-    draw_curves(plot, difference_of);
-    draw_readings(plot, difference_of, " JND");
+    for (const std::size_t slot : models().drawn())
+      for (const CurveColumn& column : columns.columns())
+        for (const float peak : {column.low_over_jnd[slot], column.high_over_jnd[slot]})
+          if (std::abs(peak) > 1.0F) plot.mark(column.tick.loop_time_s, peak, ink(colour(slot), 0.35F));
+    draw_curves(plot, sustained_of);
+    draw_readings(plot, sustained_of, " JND");
   }
 };
 

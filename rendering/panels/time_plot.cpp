@@ -75,6 +75,8 @@ void CurveColumns::add(const HistoryPoint& point, const JndLine& jnd, CurveColum
     // These ignore NaN.
     column.low_over_jnd[i] = std::fmin(column.low_over_jnd[i], difference);
     column.high_over_jnd[i] = std::fmax(column.high_over_jnd[i], difference);
+    float& sustained = column.sustained_over_jnd[i];
+    if (!(std::abs(point.sustained_over_jnd[i]) <= std::abs(sustained))) sustained = point.sustained_over_jnd[i];
   }
 }
 
@@ -111,7 +113,6 @@ std::vector<std::vector<TimePlot::ColumnPixels>> TimePlot::runs(const ColumnRang
       runs.emplace_back();
     } else {
       // Beyond the frame a curve runs along its edge.
-      const auto inside_px = [this](double y) { return std::clamp(y_px(y), top() + 1.0F, bottom() - 1.0F); };
       runs.back().push_back({time_px(column.tick.loop_time_s), inside_px(values.from), inside_px(values.to)});
     }
   }
@@ -142,6 +143,12 @@ void TimePlot::fill(ImU32 colour, const ColumnRange& range) const {
     }
     band(upper, lower, colour);
   }
+}
+
+void TimePlot::mark(double loop_time_s, double y, ImU32 colour) const {
+  const ImVec2 at(time_px(loop_time_s), inside_px(y));
+  list().AddRectFilled({at.x - style_.scale(), at.y - style_.scale()}, {at.x + style_.scale(), at.y + style_.scale()},
+                       colour);
 }
 
 void TimePlot::fault_marks() const {
