@@ -186,7 +186,7 @@ class DemoApp {
   bool needs_texts(double now_s);
   void draw(bool texts);
   void draw_texts();
-  void draw_blocks();
+  void draw_blocks(bool new_texts);
   std::vector<BlockPose> block_poses() const;
   BlockPose model_pose(std::size_t slot, BlockPose pose) const;
   BlockPose reference_pose(BlockPose pose) const;
@@ -231,6 +231,7 @@ class DemoApp {
   double key_velocity_m_per_s_ = 0.0;  // of the tool by the keys of this frame, positive inwards
   WindowLayout layout_;
   Pixels panel_{false};          // the picture of the panel
+  bool panel_waits_ = false;     // it is drawn in the next frame
   double texts_due_s_ = 0.0;     // when the texts are drawn next
   double lively_until_s_ = 0.0;  // until then they are drawn in every frame
   bool no_model_ = true;         // in the last frame

@@ -77,9 +77,12 @@ struct Viewport {
   bool operator==(const Viewport&) const = default;
 };
 
-// The ImGui window beside the picture. It has most of the texts and curves, which are drawn into a picture of their
-// own.
+// Three layers of ImGui windows, by the beginnings of their names: beside the picture, with most of the texts and
+// curves; over its parts at rest, with the background list; all others are in front of everything. The first two are
+// drawn into pictures of their own, because drawing a letter again costs a software renderer more than to copy it.
+enum class UiLayer { panel, over_picture, front };
 inline constexpr const char* kPanelWindow = "panel";
+inline constexpr const char* kOverPicture = "over ";
 
 class UiContext {
  public:
@@ -93,10 +96,10 @@ class UiContext {
   void begin_frame(const std::vector<int>& tapped = {});
   // Draws all widgets since `begin_frame`.
   void end_frame();
-  // After ImGui::Render, any number of times. Draws the widgets of kPanelWindow into a framebuffer that has the size of
-  // the panel, with the upper row first; and all others into the window.
-  static void draw_panel(const ImVec2& at, const ImVec2& size);
-  static void draw_others();
+  // After ImGui::Render, any number of times. Draws a layer into a framebuffer that shows this part of the window, with
+  // the upper row first; UiLayer::front into the window itself.
+  static void draw_layer(UiLayer layer, const ImVec2& at, const ImVec2& size);
+  static void draw_front();
 
  private:
   GLFWwindow* window_;
