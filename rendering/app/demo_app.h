@@ -65,7 +65,6 @@ class DemoFiles {
   void record(LiveSession& session);
   void save_curves(const LiveSession& session, const WindowView& shown, const CurveColumns& columns);
   void save_table(const WindowView& shown);
-  // A path for a picture in the user's data folder; empty, after a notice, where there is no folder.
   std::string picture_path() { return new_path("/picture-%Y%m%d-%H%M%S", ".png"); }
   void save_model(const LiveSession& session);
   void look_for_devices();
@@ -83,6 +82,9 @@ class DemoFiles {
   // A path in the user's data folder, with a name made of the time and a number; empty, after a notice, where there is
   // no folder.
   std::string new_path(const char* name, const char* extension);
+  // Saves `what` with `write` to such a path, with a notice.
+  void save(const std::string& what, const char* name, const char* extension,
+            const std::function<Status(const std::string& path)>& write);
 
   ViewState& view_;
   Notify notify_;

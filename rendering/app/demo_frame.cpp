@@ -55,8 +55,8 @@ bool DemoApp::needs_texts(double now_s) {
 
 void DemoApp::draw_texts() {
   const bool exhibit = view_.exhibit.on;
-  (void)style_.update(window_->size(), exhibit ? kExhibitText : view_.settings.text_size, view_.settings.theme,
-                      exhibit ? kExhibitBody_px : kBody_px);
+  style_.update(window_->size(), exhibit ? kExhibitText : view_.settings.text_size, view_.settings.theme,
+                exhibit ? kExhibitBody_px : kBody_px);
   ui_->begin_frame(tapped());
   layout_ = lay_out(ImGui::GetIO().DisplaySize);
   handle_mouse();

@@ -61,16 +61,7 @@ std::string in_lines(const std::string& text, float width, ImFont* font) {
 }
 
 void quiet_words(const std::string& text) {
-  const float room = ImGui::GetContentRegionAvail().x;
-  // Drops whole clauses, the last one first, before words.
-  std::string shown = text;
-  const auto end_of_clauses = [&] {
-    const std::size_t comma = shown.rfind(", "), semicolon = shown.rfind("; ");
-    return comma == std::string::npos || (semicolon != std::string::npos && semicolon > comma) ? semicolon : comma;
-  };
-  while (ImGui::CalcTextSize(shown.c_str()).x > room && end_of_clauses() != std::string::npos)
-    shown.resize(end_of_clauses());
-  shown = fitting(shown, room);
+  const std::string shown = fitting(text, ImGui::GetContentRegionAvail().x);
   ImGui::TextDisabled("%s", shown.c_str());
   if (shown != text) tip(text.c_str());
 }

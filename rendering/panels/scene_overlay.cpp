@@ -353,7 +353,8 @@ struct Overlay {
       if (corner) y -= size.y + 2.0F * pad;
       const float x =
           corner ? area.at.x + area.size.x - size.x - 2.0F * pad : area.at.x + 0.5F * (area.size.x - size.x);
-      ImDrawList& where = corner ? list() : *ImGui::GetForegroundDrawList();  // in front of what moves
+      ImDrawList& where =
+          corner || view.dialogs.any() ? list() : *ImGui::GetForegroundDrawList();  // in front of what moves
       draw_plate(where, {x, y + pad}, size, {pad, 0.5F * pad}, ink(colours().raised), stripe);
       where.AddText(fonts().body, line(), {x, y + pad}, text_ink(false), text.c_str(), nullptr, wrap);
       if (!corner) y += size.y + 2.0F * pad;

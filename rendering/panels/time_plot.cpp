@@ -75,8 +75,6 @@ void CurveColumns::add(const HistoryPoint& point, const JndLine& jnd, CurveColum
     // These ignore NaN.
     column.low_over_jnd[i] = std::fmin(column.low_over_jnd[i], difference);
     column.high_over_jnd[i] = std::fmax(column.high_over_jnd[i], difference);
-    float& sustained = column.sustained_over_jnd[i];
-    if (!(std::abs(point.sustained_over_jnd[i]) <= std::abs(sustained))) sustained = point.sustained_over_jnd[i];
   }
 }
 
@@ -86,14 +84,6 @@ void CurveColumns::find_highest() {
     highest_force_N_ = std::fmax(highest_force_N_, column.tick.reference_N + column.jnd_N);
     for (std::size_t i = 0; i < slots_; ++i) highest_force_N_ = std::fmax(highest_force_N_, column.tick.force_N[i]);
   }
-}
-
-const CurveColumn* CurveColumns::at(double time_s) const noexcept {
-  if (columns_.empty()) return nullptr;
-  const double place = time_s / width_s_ - first_;
-  if (!(place >= 0.0) || place >= static_cast<double>(columns_.size())) return nullptr;
-  const CurveColumn& column = columns_[static_cast<std::size_t>(place)];
-  return column.any ? &column : nullptr;
 }
 
 TimePlot::TimePlot(const UiStyle& style, const ImVec2& size, const Range& y, const char* y_unit, CurveTime& time,
@@ -113,6 +103,7 @@ std::vector<std::vector<TimePlot::ColumnPixels>> TimePlot::runs(const ColumnRang
       runs.emplace_back();
     } else {
       // Beyond the frame a curve runs along its edge.
+      const auto inside_px = [this](double y) { return std::clamp(y_px(y), top() + 1.0F, bottom() - 1.0F); };
       runs.back().push_back({time_px(column.tick.loop_time_s), inside_px(values.from), inside_px(values.to)});
     }
   }
@@ -143,12 +134,6 @@ void TimePlot::fill(ImU32 colour, const ColumnRange& range) const {
     }
     band(upper, lower, colour);
   }
-}
-
-void TimePlot::mark(double loop_time_s, double y, ImU32 colour) const {
-  const ImVec2 at(time_px(loop_time_s), inside_px(y));
-  list().AddRectFilled({at.x - style_.scale(), at.y - style_.scale()}, {at.x + style_.scale(), at.y + style_.scale()},
-                       colour);
 }
 
 void TimePlot::fault_marks() const {
@@ -222,10 +207,15 @@ void TimePlot::draw_readings(const std::vector<CurveReading>& readings) const {
     width = std::max(width, ImGui::CalcTextSize(reading.text.c_str()).x + line);
   const float pad = 0.4F * line;
   const float mouse_px = time_px(time_.hover_s);
-  // The text is on the side with more room, so that it does not hide the curve under the mouse.
+  const ImVec2 size(width + 2.0F * pad, line * static_cast<float>(readings.size() + 1) + 2.0F * pad);
+  // The text is on the side with more room, so that it does not hide the curve under the mouse; beside the panel where
+  // it would hide other plots.
   const bool at_left = mouse_px > 0.5F * (left() + right());
-  const ImVec2 low(at_left ? mouse_px - width - 3.0F * pad : mouse_px + pad, top());
-  const ImVec2 high(low.x + width + 2.0F * pad, low.y + line * static_cast<float>(readings.size() + 1) + 2.0F * pad);
+  const ImVec2 low(size.y > bottom() - top() + line ? std::max(0.0F, ImGui::GetWindowPos().x - size.x)
+                   : at_left                        ? mouse_px - size.x - pad
+                                                    : mouse_px + pad,
+                   top());
+  const ImVec2 high(low.x + size.x, low.y + size.y);
   ImDrawList& front = *ImGui::GetForegroundDrawList();
   front.AddRectFilled(low, high, ink(style_.colours().panel, 0.92F), 4.0F);
   front.AddRect(low, high, ink(style_.colours().grid), 4.0F);

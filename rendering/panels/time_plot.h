@@ -4,7 +4,6 @@
 // Thread guarantee: columns are a value type, `gather` reuses their memory; plots: the window's thread, inside a frame.
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <functional>
@@ -26,10 +25,8 @@ struct CurveColumn {
   // no difference is shown that did not occur.
   HistoryPoint tick;
   float jnd_N = kMissing;  // at that tick; NaN: no reference
-  // By slot: extremes of (model - reference) / JND, signed; 0 out of contact, NaN without a force or a comparison; and
-  // the value of largest magnitude of its mean over 50 ms.
-  std::array<float, kMaxModels> low_over_jnd = no_values(), high_over_jnd = no_values(),
-                                sustained_over_jnd = no_values();
+  // By slot: extremes of (model - reference) / JND, signed; 0 out of contact, NaN without a force or a comparison.
+  std::array<float, kMaxModels> low_over_jnd = no_values(), high_over_jnd = no_values();
 };
 
 // The error (95 %) that the active model predicts of its force, 0 out of contact; NaN: there is none, or there is a
@@ -45,8 +42,6 @@ class CurveColumns {
               std::size_t count);
 
   const std::vector<CurveColumn>& columns() const noexcept { return columns_; }
-  // The column at a time; null: there is none, or it has no ticks.
-  const CurveColumn* at(double time_s) const noexcept;
   // The largest over all columns and slots; 0 without ticks.
   float highest_force_N() const noexcept { return highest_force_N_; }
 
@@ -82,8 +77,6 @@ class TimePlot : public LivePlot {
   void curve(ImU32 colour, float thickness, const ColumnRange& range, const Dashes& dashes = {}) const;
   // Fills the ranges of the columns. A NaN interrupts the area.
   void fill(ImU32 colour, const ColumnRange& range) const;
-  // A small square; beyond the frame it is at its edge.
-  void mark(double loop_time_s, double y, ImU32 colour) const;
   // Marks at the upper edge: a line for missed deadlines, a triangle for a fault.
   void fault_marks() const;
 
@@ -99,7 +92,6 @@ class TimePlot : public LivePlot {
   };
   std::vector<std::vector<ColumnPixels>> runs(const ColumnRange& range) const;
   float time_px(double loop_time_s) const noexcept { return x_px(loop_time_s - time_.zero_s); }
-  float inside_px(double y) const noexcept { return std::clamp(y_px(y), top() + 1.0F, bottom() - 1.0F); }
   double time_under_mouse() const;
   void drag(double oldest_s);
 

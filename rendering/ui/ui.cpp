@@ -74,17 +74,16 @@ float ui_scale(const UiSize& size, float larger) noexcept {
   return unit * kScaleStep * std::round(scale / kScaleStep);
 }
 
-bool UiStyle::update(const UiSize& size, float larger, Theme theme, float body_px) {
+void UiStyle::update(const UiSize& size, float larger, Theme theme, float body_px) {
   const float wanted = ui_scale(size, larger);
   const bool resized = wanted != scale_ || size.pixels_per_unit != pixels_per_unit_ || body_px != body_px_;
-  if (!resized && theme == theme_) return false;
+  if (!resized && theme == theme_) return;
   scale_ = wanted;
   pixels_per_unit_ = size.pixels_per_unit;
   body_px_ = body_px;
   theme_ = theme;
   if (resized) build_fonts();
   set_colours();
-  return true;
 }
 
 // Builds fonts in pixels of the framebuffer, so that they are sharp; they are drawn in units of the window.
@@ -169,11 +168,6 @@ void UiContext::begin_frame(const std::vector<int>& tapped) {
   report(true);
   ImGui::NewFrame();
   report(false);
-}
-
-void UiContext::end_frame() {
-  ImGui::Render();
-  ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
 }
 
 void UiContext::draw_layer(UiLayer layer, const ImVec2& at, const ImVec2& size) {
