@@ -288,6 +288,7 @@ Status DemoApp::set_up_exhibit(const ExhibitTimes& times) {
 }
 
 Status DemoApp::screenshot(const std::string& path, bool overwrite) {
+  panel_waits_ = false;
   draw(true);
   return window_->save_frame(path, overwrite);
 }

@@ -65,7 +65,6 @@ class DemoFiles {
   void record(LiveSession& session);
   void save_curves(const LiveSession& session, const WindowView& shown, const CurveColumns& columns);
   void save_table(const WindowView& shown);
-  // A path for a picture in the user's data folder; empty, after a notice, where there is no folder.
   std::string picture_path() { return new_path("/picture-%Y%m%d-%H%M%S", ".png"); }
   void save_model(const LiveSession& session);
   void look_for_devices();
@@ -83,6 +82,9 @@ class DemoFiles {
   // A path in the user's data folder, with a name made of the time and a number; empty, after a notice, where there is
   // no folder.
   std::string new_path(const char* name, const char* extension);
+  // Saves `what` with `write` to such a path, with a notice.
+  void save(const std::string& what, const char* name, const char* extension,
+            const std::function<Status(const std::string& path)>& write);
 
   ViewState& view_;
   Notify notify_;
@@ -186,7 +188,7 @@ class DemoApp {
   bool needs_texts(double now_s);
   void draw(bool texts);
   void draw_texts();
-  void draw_blocks();
+  void draw_blocks(bool new_texts);
   std::vector<BlockPose> block_poses() const;
   BlockPose model_pose(std::size_t slot, BlockPose pose) const;
   BlockPose reference_pose(BlockPose pose) const;
@@ -231,6 +233,7 @@ class DemoApp {
   double key_velocity_m_per_s_ = 0.0;  // of the tool by the keys of this frame, positive inwards
   WindowLayout layout_;
   Pixels panel_{false};          // the picture of the panel
+  bool panel_waits_ = false;     // it is drawn in the next frame
   double texts_due_s_ = 0.0;     // when the texts are drawn next
   double lively_until_s_ = 0.0;  // until then they are drawn in every frame
   bool no_model_ = true;         // in the last frame

@@ -270,18 +270,22 @@ void DemoFiles::save_curves(const LiveSession& session, const WindowView& shown,
 }
 
 void DemoFiles::save_table(const WindowView& shown) {
-  const std::string path = new_path("/table-%Y%m%d-%H%M%S", ".csv");
-  if (path.empty()) return;
-  const Status written = write_file_atomically(path, table_csv(shown.models), false);
-  notify_(written ? "saved " + path : written.error().message, !written);
+  save("the table", "/table-%Y%m%d-%H%M%S", ".csv",
+       [&](const std::string& path) { return write_file_atomically(path, table_csv(shown.models), false); });
 }
 
 void DemoFiles::save_model(const LiveSession& session) {
-  const std::string path = new_path("/model-%Y%m%d-%H%M%S", ".json");
+  const SessionModels& models = session.models();
+  save(models.info(models.selected()).name, "/model-%Y%m%d-%H%M%S", ".json",
+       [&](const std::string& path) { return models.save(models.selected(), path); });
+}
+
+void DemoFiles::save(const std::string& what, const char* name, const char* extension,
+                     const std::function<Status(const std::string&)>& write) {
+  const std::string path = new_path(name, extension);
   if (path.empty()) return;
-  const std::size_t slot = session.models().selected();
-  const Status status = session.models().save(slot, path);
-  notify_(status ? "saved " + session.models().info(slot).name + " to " + path : status.error().message, !status);
+  const Status written = write(path);
+  notify_(written ? "saved " + what + " to " + path : written.error().message, !written);
 }
 
 void DemoFiles::look_for_devices() {

@@ -48,13 +48,15 @@ bool DemoApp::needs_texts(double now_s) {
   if (!lively && now_s < texts_due_s_ && size.width == drawn.x && size.height == drawn.y) return false;
   // A quarter of a frame of tolerance, so that it is every fourth frame at 60 Hz.
   texts_due_s_ = now_s + kTexts_s - 0.25 / 60.0;
+  // The panel follows in the next frame unless the user waits for it, so that no frame has all of the work.
+  panel_waits_ = !lively && !panel_waits_;
   return true;
 }
 
 void DemoApp::draw_texts() {
   const bool exhibit = view_.exhibit.on;
-  (void)style_.update(window_->size(), exhibit ? kExhibitText : view_.settings.text_size, view_.settings.theme,
-                      exhibit ? kExhibitBody_px : kBody_px);
+  style_.update(window_->size(), exhibit ? kExhibitText : view_.settings.text_size, view_.settings.theme,
+                exhibit ? kExhibitBody_px : kBody_px);
   ui_->begin_frame(tapped());
   layout_ = lay_out(ImGui::GetIO().DisplaySize);
   handle_mouse();
@@ -65,25 +67,27 @@ void DemoApp::draw_texts() {
     draw_panel(curves_, shown_, view_, style_, layout_.panel, actions_);
   }
   ImGui::Render();
-  const Viewport panel = pixels_of(layout_.panel);
-  if (panel.empty()) return;
-  const Rgb& colour = style_.colours().panel;
-  panel_.draw_into(panel.width, panel.height);
-  glClearColor(colour.r, colour.g, colour.b, 1.0F);
-  glClear(GL_COLOR_BUFFER_BIT);
-  UiContext::draw_panel(layout_.panel.at, layout_.panel.size);
 }
 
 void DemoApp::draw(bool texts) {
   if (texts) draw_texts();
-  draw_blocks();
+  draw_blocks(texts);
   const Viewport panel = pixels_of(layout_.panel);
-  if (!panel.empty()) panel_.copy_to(nullptr, {0, 0, panel.width, panel.height}, panel);
+  if (!panel.empty()) {
+    if (texts ? !panel_waits_ : std::exchange(panel_waits_, false)) {
+      const Rgb& colour = style_.colours().panel;
+      panel_.draw_into(panel.width, panel.height);
+      glClearColor(colour.r, colour.g, colour.b, 1.0F);
+      glClear(GL_COLOR_BUFFER_BIT);
+      UiContext::draw_layer(UiLayer::panel, layout_.panel.at, layout_.panel.size);
+    }
+    panel_.copy_to(nullptr, {0, 0, panel.width, panel.height}, panel);
+  }
   glBindFramebuffer(GL_FRAMEBUFFER, 0);
-  UiContext::draw_others();
+  UiContext::draw_front();
 }
 
-void DemoApp::draw_blocks() {
+void DemoApp::draw_blocks(bool new_texts) {
   const SceneArea& area = layout_.scene;
   const std::vector<BlockPose> poses = block_poses();
   const SceneArea stage = stage_of(shown_, view_, style_, area);
@@ -91,7 +95,8 @@ void DemoApp::draw_blocks() {
                       1.0F - (stage.at.y - area.at.y + stage.size.y) / area.size.y);
   // Their number changes when models become ready; the camera jumps to the first ones.
   blocks_->show(poses.size(), {area.size.x, area.size.y}, std::exchange(no_model_, shown_.blocks.empty()));
-  blocks_->draw(poses, pixels_of(area), view_.settings.theme);
+  blocks_->draw(poses, pixels_of(area), view_.settings.theme, new_texts,
+                [&] { UiContext::draw_layer(UiLayer::over_picture, area.at, area.size); });
 }
 
 std::vector<BlockPose> DemoApp::block_poses() const {

@@ -95,12 +95,15 @@ void StudyApp::draw() {
   const ImVec2 all = ImGui::GetIO().DisplaySize;
   begin_panel("study", {{0.5F * (1.0F - kColumnShare) * all.x, 0.15F * all.y}, {kColumnShare * all.x, 0.82F * all.y}});
   ImGui::PushTextWrapPos();
-  if (study_ == nullptr) {
-    ImGui::Text("The strokes are prepared, one moment ...");
-    ImGui::PopTextWrapPos();
-    ImGui::End();
-    return ui_->end_frame();
-  }
+  study_ == nullptr ? ImGui::Text("The strokes are prepared, one moment ...") : draw_study();
+  ImGui::PopTextWrapPos();
+  ImGui::End();
+  ImGui::Render();
+  UiContext::draw_front();
+  pressed_.clear();
+}
+
+void StudyApp::draw_study() {
   session() == nullptr ? draw_entry() : draw_session();
   gap();
   if (const std::string words = study_->device_words(); !words.empty()) ImGui::Text("%s", words.c_str());
@@ -112,10 +115,6 @@ void StudyApp::draw() {
                        "This device renders no force. This is a rehearsal; its answers are marked and excluded "
                        "from the analysis.");
   }
-  ImGui::PopTextWrapPos();
-  ImGui::End();
-  ui_->end_frame();
-  pressed_.clear();
 }
 
 bool StudyApp::button(const char* label, int key, ImVec2 size) {

@@ -40,6 +40,7 @@ class StudyApp {
  private:
   StudyApp() = default;
   void draw();
+  void draw_study();
   void draw_entry();
   void draw_session();
   void draw_end();

@@ -11,6 +11,7 @@
 #include <cstddef>
 #include <cstdio>
 #include <exception>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -111,15 +112,13 @@ void keep_on_screen(GLFWwindow* handle) {
 // The display asks for no scale, or for one that no display has.
 bool scale_is_usable(float scale) { return scale > 0.2F && scale < 10.0F; }
 
-}  // namespace
-
+// Whether OpenGL is a program, of Mesa (three), Microsoft or Apple, instead of a graphics card.
 bool is_software(std::string_view renderer) noexcept {
-  // The software renderers of Mesa (three), Microsoft and Apple.
-  for (const std::string_view program : {"llvmpipe", "softpipe", "SWR", "GDI Generic", "Software"}) {
-    if (renderer.find(program) != std::string_view::npos) return true;
-  }
-  return false;
+  constexpr std::string_view kPrograms[] = {"llvmpipe", "softpipe", "SWR", "GDI Generic", "Software"};
+  return std::ranges::any_of(kPrograms, [&](auto name) { return renderer.find(name) != renderer.npos; });
 }
+
+}  // namespace
 
 Status Window::find_display() {
   glfwSetErrorCallback(keep_problem);

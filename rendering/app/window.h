@@ -6,7 +6,6 @@
 #include <functional>
 #include <memory>
 #include <string>
-#include <string_view>
 
 #include "engine/base/result.h"
 #include "rendering/ui/ui.h"
@@ -20,9 +19,6 @@ struct WindowRequest {
   bool fullscreen = false;
   Rgb empty{0.08F, 0.09F, 0.10F};  // colour until the first frame
 };
-
-// Whether OpenGL is a program instead of a graphics card. `renderer`: its name as OpenGL reports it.
-bool is_software(std::string_view renderer) noexcept;
 
 class Window {
  public:

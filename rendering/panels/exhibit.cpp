@@ -217,16 +217,12 @@ void Exhibit::read_ticks(const WindowView& shown) {
 void Exhibit::choose_attraction(const WindowView& shown) {
   if (repeats_ && reveal_.done(shown.health.newest.loop_time_s - kHeld_s)) {
     repeats_ = false;
-    forget_strokes();
+    best_.clear();
+    worst_.clear();
   }
   if (ready_ || !shown.settled) return;
   attraction_ = ExhibitGame::line_up_of(ready_models(shown), has_reference(shown), false);
   ready_ = !attraction_.levels.empty();
-}
-
-void Exhibit::forget_strokes() {
-  best_.clear();
-  worst_.clear();
 }
 
 void Exhibit::begin_reveal(const WindowView& shown) {
@@ -285,7 +281,8 @@ void Exhibit::begin(const WindowView& shown) {
 void Exhibit::forget(ViewState& view, const WindowActions& actions) {
   game_.reset();
   ready_ = repeats_ = farewell_ = false;
-  forget_strokes();
+  best_.clear();
+  worst_.clear();
   language_ = 0;
   host_ = false;
   actions.reset_figures();

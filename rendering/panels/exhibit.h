@@ -99,7 +99,6 @@ class Exhibit {
   void forget(ViewState& view, const WindowActions& actions);
   void read_ticks(const WindowView& shown);
   void choose_attraction(const WindowView& shown);
-  void forget_strokes();
   void note_device(const WindowView& shown);
   void begin_reveal(const WindowView& shown);
   bool reveal_is_done(const WindowView& shown) const;

@@ -199,36 +199,18 @@ struct Exhibit::Screens {
     draw_slow_motion();
   }
 
-  // The largest difference of a level in all presses, as a bar beside the band of one JND.
-  void draw_bar(std::size_t level, double range) {
+  // A line about the model of a level, and a bar below it. `band`, `share`: lengths of its frame and of the bar, as
+  // shares of the width.
+  void draw_bar(std::size_t level, const std::string& line, double band, double share) {
     const ExhibitModel& model = game.line_up().levels[level];
-    const double largest = game.largest_over_jnd(level);
-    say_quietly(words()("name_" + kind_of(model), centres_of(model)) + ": " + number(largest) + ", " +
-                words()(game.rounds()[level].correct() ? "row_found" : "row_fooled"));
+    say_quietly(words()("name_" + kind_of(model), centres_of(model)) + ": " + line);
     const float height = 0.8F * body(), all = ImGui::GetContentRegionAvail().x;
-    const ImVec2 at = ImGui::GetCursorScreenPos();
-    const auto length = [&](double over_jnd) { return all * static_cast<float>(over_jnd / range); };
+    const ImVec2 at = ImGui::GetCursorScreenPos(), frame(at.x + all * static_cast<float>(band), at.y + height);
     ImDrawList& list = *ImGui::GetWindowDrawList();
-    list.AddRectFilled(at, {at.x + length(1.0), at.y + height}, ink(style.colours().band));
-    list.AddRect(at, {at.x + length(1.0), at.y + height}, ink(style.colours().edge));
-    list.AddRectFilled({at.x, at.y + 0.2F * height}, {at.x + std::max(3.0F, length(largest)), at.y + 0.8F * height},
-                       ink(colour_of(model)));
-    ImGui::Dummy({1.0F, height});
-  }
-
-  // How many visitors each computer has fooled today.
-  void draw_day(std::size_t level) {
-    const std::uint64_t answers = exhibit.tally_.answers[level], fooled = exhibit.tally_.fooled[level];
-    if (answers == 0) return;
-    const ExhibitModel& model = game.line_up().levels[level];
-    say_quietly(words()("name_" + kind_of(model), centres_of(model)) + ": " +
-                words()("day_of", std::to_string(fooled), std::to_string(answers)));
-    const float height = 0.8F * body(), all = ImGui::GetContentRegionAvail().x;
-    const ImVec2 at = ImGui::GetCursorScreenPos();
-    const float share = static_cast<float>(fooled) / static_cast<float>(answers);
-    ImDrawList& list = *ImGui::GetWindowDrawList();
-    list.AddRect(at, {at.x + all, at.y + height}, ink(style.colours().edge));
-    list.AddRectFilled(at, {at.x + all * share, at.y + height}, ink(colour_of(model)));
+    list.AddRectFilled(at, frame, ink(style.colours().band));
+    list.AddRect(at, frame, ink(style.colours().edge));
+    const float filled = share > 0.0 ? std::max(3.0F, all * static_cast<float>(share)) : 0.0F;
+    list.AddRectFilled({at.x, at.y + 0.2F * height}, {at.x + filled, at.y + 0.8F * height}, ink(colour_of(model)));
     ImGui::Dummy({1.0F, height});
   }
 
@@ -246,7 +228,11 @@ struct Exhibit::Screens {
     say(words()("score"));
     double range = 2.0;
     for (std::size_t i = 0; i < levels; ++i) range = std::max(range, 1.05 * game.largest_over_jnd(i));
-    for (std::size_t i = 0; i < levels; ++i) draw_bar(i, range);
+    for (std::size_t i = 0; i < levels; ++i) {
+      const double largest = game.largest_over_jnd(i);
+      const char* found = game.rounds()[i].correct() ? "row_found" : "row_fooled";
+      draw_bar(i, number(largest) + ", " + words()(found), 1.0 / range, largest / range);
+    }
     say_quietly(words()("bars"));
     space(0.5F);
     exhibit.farewell_ = button(words()("next"), "Enter");
@@ -260,7 +246,12 @@ struct Exhibit::Screens {
     say(words()(hidden ? "take_home" : "take_home_noticed", time_words(best.tick_ns())));
     space(0.4F);
     say_quietly(words()("day"));
-    for (std::size_t i = 0; i < levels; ++i) draw_day(i);
+    for (std::size_t i = 0; i < levels; ++i) {
+      const std::uint64_t answers = exhibit.tally_.answers[i], fooled = exhibit.tally_.fooled[i];
+      if (answers > 0)  // how many visitors it has fooled
+        draw_bar(i, words()("day_of", std::to_string(fooled), std::to_string(answers)), 1.0,
+                 static_cast<double>(fooled) / static_cast<double>(answers));
+    }
     space(0.5F);
     if (button(words()("again"), "Enter")) exhibit.begin(shown);
   }

@@ -164,10 +164,20 @@ void draw_panel(ForceCurves& curves, const WindowView& shown, ViewState& view, c
   draw_model_table(shown, view, style, table, actions);
   if (centres > 0.0F) draw_centres(models, view, actions);
   if (bins) {
-    section_title(style, "ERROR / JND AGAINST TIME OF A TICK");
-    ImGui::SameLine();
-    quiet_words(models.counted);
-    draw_speed(models, style, rest * 0.36F);
+    const float all = ImGui::GetContentRegionAvail().x, height = rest * 0.36F;
+    const bool both = all > 33.0F * ImGui::GetFontSize();  // there is room for the labels of both
+    const float left = both ? kLeftShare * all : all;
+    section_title(style, "ERROR / JND AGAINST TIME");
+    ImGui::SameLine(both ? left + ImGui::GetStyle().WindowPadding.x : 0.0F);
+    both ? section_title(style, "AGAINST FORCE") : quiet_words(models.counted);
+    tip(("Over " + models.counted + ". Against force: mean + standard deviation in steps of two JND.").c_str());
+    ImGui::BeginGroup();
+    draw_speed(models, style, {left - (both ? ImGui::GetStyle().ItemSpacing.x : 0.0F), height});
+    ImGui::EndGroup();
+    if (both) {
+      ImGui::SameLine();
+      draw_against_force(models, style, {all - left, height});
+    }
   }
   const float above_px = ImGui::GetCursorPosY();
   draw_health(shown.health, view, style);

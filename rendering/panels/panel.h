@@ -57,6 +57,8 @@ void section_title(const UiStyle& style, const char* title);
 // A tooltip for the last item, below or above it.
 void tip(const char* text);
 
+// The share of the panel's width for what stands left of a plot against depth or force.
+inline constexpr float kLeftShare = 0.6F;
 // The curves: force against time with the JND band, force against depth, and the difference of every model from the
 // reference in JND.
 class ForceCurves {
@@ -71,8 +73,8 @@ class ForceCurves {
 };
 
 // The table of models. A click on a row makes its model the active one, with Shift it compares it with the active one
-// alone; a click on its error shows the moment of its largest one. A right click on a
-// model of another material offers to compare it. The last row adds a model.
+// alone; a click on its error shows the moment of its largest one. A right click on a model of another material offers
+// to compare it. The last row adds a model.
 void draw_model_table(const WindowView& shown, ViewState& view, const UiStyle& style, float height,
                       const WindowActions& actions);
 // Which other models have the forces of this one, and why; empty: none. Begins with a line break.
@@ -82,7 +84,9 @@ std::string equal_words(const ModelInfo& info);
 std::vector<int> shown_columns(float room, float (*width)(int column));
 
 // The plot of error against time: one dot for each model, with the columns "99 % error / JND" and "ns" of the table.
-void draw_speed(const ModelsView& models, const UiStyle& style, float height);
+void draw_speed(const ModelsView& models, const UiStyle& style, const ImVec2& size);
+// The plot of error against force: mean + standard deviation of the error over the JND in each bin of the force.
+void draw_against_force(const ModelsView& models, const UiStyle& style, const ImVec2& size);
 // Its axes: decimal logarithms of the time of a tick, ns, and of the error over the JND, with ranges that show all
 // dots, their intervals and paths, and the JND. Without a model with errors the ranges are those of usual models.
 PlotAxes speed_axes(const ModelsView& models);

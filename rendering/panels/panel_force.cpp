@@ -15,8 +15,6 @@ constexpr float kColumn_px = 2.6F;
 // Range of the difference view on both sides of 0: three times the height of the band.
 constexpr double kDifference_jnd = 3.0;
 constexpr float kPredictedAlpha = 0.28F;
-// Share of the width for the curves over time; the curves over depth have the rest.
-constexpr float kTimeShare = 0.6F;
 constexpr std::size_t kLongestPress = 30'000;  // ticks
 // Largest number of points of a curve over depth: one for every few ticks in ten seconds.
 constexpr std::size_t kLoopPoints = 1500;
@@ -33,16 +31,11 @@ double eased_scale(double scale, double wanted) {
 Range single(float value) { return {value, value}; }
 Range around(double middle, double half) { return {middle - half, middle + half}; }
 
-// The end of the range with the larger magnitude.
-double farther(const Range& range) { return -range.from > range.to ? range.from : range.to; }
+// A quantity of a model at a tick.
+using SlotValue = float (*)(const HistoryPoint& tick, std::size_t slot);
 
-// A quantity of a model in a column.
-using SlotRange = Range (*)(const CurveColumn& column, std::size_t slot);
-
-Range force_of(const CurveColumn& column, std::size_t slot) { return single(column.tick.force_N[slot]); }
-Range difference_of(const CurveColumn& column, std::size_t slot) {
-  return {column.low_over_jnd[slot], column.high_over_jnd[slot]};
-}
+float force_of(const HistoryPoint& tick, std::size_t slot) { return tick.force_N[slot]; }
+float sustained_of(const HistoryPoint& tick, std::size_t slot) { return tick.sustained_over_jnd[slot]; }
 
 struct Drawing {
   const WindowView& shown;
@@ -104,34 +97,37 @@ struct Drawing {
     if (models().out_of_domain()) {
       ImGui::TextColored(paint(style.colours().fault), "away from the recorded data");
     } else if (models().stands) {
-      quiet_words(view.worst ? view.worst->words : "stands still; Space continues");
+      quiet_words(view.worst           ? view.worst->words
+                  : view.time.dragging ? "the moment under the mouse; let go to return"
+                                       : "stands still; Space continues");
     } else {
       quiet_words("outside the band most people notice it");
     }
-    tip("Model minus reference, in just noticeable differences: inside the band few people notice it.");
+    tip("Model minus reference, mean over 50 ms, in just noticeable differences: inside the band few people notice "
+        "it.\n"
+        "Faint marks: single ticks outside.");
   }
 
-  void draw_curves(const TimePlot& plot, SlotRange range) const {
+  void draw_curves(const TimePlot& plot, SlotValue value) const {
     for (const std::size_t slot : models().drawn()) {
       plot.curve(
           ink(colour(slot)), (slot == models().selected ? kSelectedLine_px : kModelLine_px) * scale(),
-          [&](const CurveColumn& column) { return range(column, slot); }, slot_dashes(models(), slot));
+          [&](const CurveColumn& column) { return single(value(column.tick, slot)); }, slot_dashes(models(), slot));
     }
   }
 
-  // Draws the values under the mouse.
-  void draw_readings(TimePlot& plot, SlotRange range, const char* unit) {
+  // Draws the values under the mouse; during a drag the table has them.
+  void draw_readings(TimePlot& plot, SlotValue value, const char* unit) {
     if (plot.handle_mouse(*shown.history)) hovered = true;
-
-    const CurveColumn* under = columns.at(view.time.hover_s);
+    const HistoryPoint* under = view.time.dragging ? nullptr : shown.history->last_until(view.time.hover_s);
+    if (under == nullptr) return;
     std::vector<CurveReading> readings;
-    const auto read = [&](const std::string& name, const Rgb& in, double value, const char* of) {
-      if (!std::isnan(value)) readings.push_back({name + "  " + at_most_three_decimals(value) + of, in});
+    const auto read = [&](const std::string& name, const Rgb& in, float number, const char* of) {
+      if (!std::isnan(number)) readings.push_back({name + "  " + at_most_three_decimals(number) + of, in});
     };
-    if (under != nullptr) read("reference", reference(), under->tick.reference_N, " N");
-    for (const std::size_t slot : models().listed()) {
-      if (under != nullptr) read(models().slots[slot].name, colour(slot), farther(range(*under, slot)), unit);
-    }
+    read("reference", reference(), under->reference_N, " N");
+    for (const std::size_t slot : models().listed())
+      read(models().slots[slot].name, colour(slot), value(*under, slot), unit);
     plot.draw_readings(readings);
   }
 
@@ -204,8 +200,18 @@ struct Drawing {
     plot.jnd_band(-1.0, 1.0);
     fill_prediction(plot, [&](const CurveColumn& column) { return around(0.0, predicted_over_jnd(column)); });
     if (!predicts()) plot.level(0.0, ink(reference()), kReferenceLine_px * scale());
-    draw_curves(plot, difference_of);
-    draw_readings(plot, difference_of, " JND");
+    for (const std::size_t slot : models().drawn()) {
+      for (const CurveColumn& column : columns.columns()) {
+        for (const float peak : {column.low_over_jnd[slot], column.high_over_jnd[slot]}) {
+          const float x = plot.x_px(column.tick.loop_time_s - view.time.zero_s), r = scale();
+          const float y = std::clamp(plot.y_px(peak), plot.top(), plot.bottom());
+          if (std::abs(peak) > 1.0F)
+            plot.list().AddRectFilled({x - r, y - r}, {x + r, y + r}, ink(colour(slot), 0.35F));
+        }
+      }
+    }
+    draw_curves(plot, sustained_of);
+    draw_readings(plot, sustained_of, " JND");
   }
 };
 
@@ -220,10 +226,10 @@ void ForceCurves::draw(const WindowView& shown, ViewState& view, const UiStyle& 
                   drawing.end_s, count);
   const double highest_N = 1.05 * columns_.highest_force_N();
   force_scale_N_ = eased_scale(force_scale_N_, std::max({1.0, shown.usual_force_N, highest_N}));
-  drawing.draw_titles_of_force(kTimeShare * all);
-  drawing.draw_force({kTimeShare * all - ImGui::GetStyle().ItemSpacing.x, force_height}, force_scale_N_);
+  drawing.draw_titles_of_force(kLeftShare * all);
+  drawing.draw_force({kLeftShare * all - ImGui::GetStyle().ItemSpacing.x, force_height}, force_scale_N_);
   ImGui::SameLine();
-  drawing.draw_loops({(1.0F - kTimeShare) * all, force_height}, force_scale_N_);
+  drawing.draw_loops({(1.0F - kLeftShare) * all, force_height}, force_scale_N_);
   drawing.draw_titles_of_error();
   drawing.draw_difference({all, error_height});
   if (!drawing.hovered) view.time.hover_s = std::nan("");

@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <string_view>
 #include <utility>
 
 #include "engine/base/text.h"
@@ -210,11 +209,11 @@ struct Rows {
       ImGui::PushID(method.family.c_str());
       ImGui::AlignTextToFramePadding();
       ImGui::TextUnformatted(method.family.c_str());
-      for (const char* size : {"", "10", "20", "50", "100", "200"}) {
-        if ((*size == '\0') == method.takes_centres) continue;
-        ImGui::SameLine(*size == '\0' || size == std::string_view("10") ? 9.0F * ImGui::GetFontSize() : 0.0F);
-        if (ImGui::Button(*size == '\0' ? "add" : size)) {
-          actions.add_model(method.family + (*size == '\0' ? "" : "-") + size);
+      for (const int centres : method.centres) {
+        const std::string size = centres > 0 ? std::to_string(centres) : "";
+        ImGui::SameLine(centres == method.centres.front() ? 9.0F * ImGui::GetFontSize() : 0.0F);
+        if (ImGui::Button(size.empty() ? "add" : size.c_str())) {
+          actions.add_model(method.family + (size.empty() ? "" : "-") + size);
           ImGui::CloseCurrentPopup();
         }
       }

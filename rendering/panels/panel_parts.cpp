@@ -4,7 +4,8 @@
 #include <cmath>
 #include <iterator>
 #include <sstream>
-#include <string_view>
+
+#include "scenes/worker/model_worker.h"
 
 namespace palpate {
 
@@ -60,16 +61,7 @@ std::string in_lines(const std::string& text, float width, ImFont* font) {
 }
 
 void quiet_words(const std::string& text) {
-  const float room = ImGui::GetContentRegionAvail().x;
-  // Drops whole clauses, the last one first, before words.
-  std::string shown = text;
-  const auto end_of_clauses = [&] {
-    const std::size_t comma = shown.rfind(", "), semicolon = shown.rfind("; ");
-    return comma == std::string::npos || (semicolon != std::string::npos && semicolon > comma) ? semicolon : comma;
-  };
-  while (ImGui::CalcTextSize(shown.c_str()).x > room && end_of_clauses() != std::string::npos)
-    shown.resize(end_of_clauses());
-  shown = fitting(shown, room);
+  const std::string shown = fitting(text, ImGui::GetContentRegionAvail().x);
   ImGui::TextDisabled("%s", shown.c_str());
   if (shown != text) tip(text.c_str());
 }
@@ -105,14 +97,12 @@ Rgb slot_colour(const ModelsView& models, std::size_t slot, Theme theme) {
   return method_colour(models.slots[slot].method, theme, among_its_method(models, slot));
 }
 
-// A method's pattern follows from its place in the alphabet, so that it is the same in every session.
+// A method's pattern follows from its place in the table of methods, so that it is the same in every session.
 Dashes slot_dashes(const ModelsView& models, std::size_t slot) {
   constexpr Dashes kPatterns[] = {{0.0F, 0.0F}, {14.0F, 4.0F}, {7.0F, 3.0F}, {3.0F, 3.0F}, {22.0F, 7.0F}};
-  constexpr std::string_view kOrder[] = {"trend", "greedy", "kdtree", "random", "voxel"};
-  const std::string& method = models.slots[slot].method;
-  std::size_t place = 0;
-  for (std::size_t i = 0; i < std::size(kOrder); ++i)
-    if (method == kOrder[i]) place = i;
+  const std::vector<MethodChoice>& methods = method_choices();
+  const auto method = std::ranges::find(methods, models.slots[slot].method, &MethodChoice::family);
+  const auto place = static_cast<std::size_t>(method - methods.begin());
   return kPatterns[(place + among_its_method(models, slot)) % std::size(kPatterns)];
 }
 

@@ -38,25 +38,10 @@ struct Extent {
   }
 };
 
-// The gridlines of 2 and 5 times a power of ten; in less than half a decade, of 3 and 7 as well.
-std::vector<double> between_decades(const Range& range) {
-  std::vector<double> marks{2.0, 5.0};
-  if (range.to - range.from < 0.6) marks = {1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0};
-  std::vector<double> values;
-  for (double decade = std::floor(range.from); decade <= range.to; decade += 1.0) {
-    for (const double mark : marks) {
-      const double at = decade + std::log10(mark);
-      if (at > range.from && at < range.to) values.push_back(at);
-    }
-  }
-  return values;
-}
-
 struct SpeedPlot {
   const ModelsView& models;
   const UiStyle& style;
   const LivePlot& plot;
-  const PlotAxes& axes;
   std::vector<ImVec4> placed{}, lines{};  // rectangles of dots and names; of lines
 
   float line() const { return ImGui::GetFontSize(); }
@@ -66,33 +51,6 @@ struct SpeedPlot {
   }
   ImVec2 at(double time_ns, double error_over_jnd) const {
     return {plot.x_px(std::log10(time_ns)), plot.y_px(log_error(error_over_jnd))};
-  }
-
-  // Axes have labels at decades only; draws lines and labels between them. The labels are outside of the frame.
-  void draw_grid() const {
-    const ImU32 grid = ink(style.colours().grid), quiet = ink(style.colours().quiet);
-    for (const double time : between_decades(axes.x))
-      list().AddLine({plot.x_px(time), plot.top()}, {plot.x_px(time), plot.bottom()}, grid);
-    for (const double error : between_decades(axes.y)) plot.level(error, grid, 1.0F);
-    list().PushClipRectFullScreen();
-    float free_px = plot.left() - line();
-    for (const double time : between_decades(axes.x)) {
-      const std::string text = fixed(std::pow(10.0, time), 0);
-      const float width = ImGui::CalcTextSize(text.c_str()).x, x = plot.x_px(time) - 0.5F * width;
-      if (x < free_px || x + width > plot.right() - 2.0F * line()) continue;
-      list().AddText({x, plot.bottom() + 0.15F * line()}, quiet, text.c_str());
-      free_px = x + width + 0.6F * line();
-    }
-    float above_px = plot.bottom() + line();
-    for (const double error : between_decades(axes.y)) {
-      const std::string text = general(std::pow(10.0, error), 2);
-      const float y = plot.y_px(error);
-      if (above_px - y < 1.1F * line() || std::abs(y - plot.y_px(0.0)) < 1.1F * line()) continue;
-      list().AddText({plot.left() - ImGui::CalcTextSize(text.c_str()).x - 0.3F * line(), y - 0.55F * line()}, quiet,
-                     text.c_str());
-      above_px = y;
-    }
-    list().PopClipRect();
   }
 
   // Draws the intervals, the path over the number of centres, and the dot of a model.
@@ -133,19 +91,20 @@ struct SpeedPlot {
     return std::ranges::none_of(placed, covers) && (over_lines || std::ranges::none_of(lines, covers));
   }
 
-  // Draws what the JND is above its line, at the left or the right, where no model is.
+  // Draws what the JND is above its line, where no model is.
   void draw_caption() {
-    const char* text = "above 1: most people notice it";
-    const float width = ImGui::CalcTextSize(text).x, gap = 0.4F * line(), bottom = plot.y_px(0.0);
-    ImVec4 box(plot.left() + gap, bottom - 1.1F * line(), plot.left() + gap + width, bottom);
-    const ImVec4 right(plot.right() - gap - width, box.y, plot.right() - gap, box.w);
-    if (!is_free(box) && is_free(right)) box = right;
-    placed.push_back(box);
-    list().AddText({box.x, box.y}, ink(style.colours().quiet), text);
+    const char* text = "above 1: most notice it";
+    const float width = ImGui::CalcTextSize(text).x, bottom = plot.y_px(0.0), step = 1.5F * line();
+    for (float left = plot.left() + 0.4F * line(); left + width < plot.right(); left += step) {
+      const ImVec4 box(left, bottom - 1.1F * line(), left + width, bottom);
+      if (!is_free(box)) continue;
+      placed.push_back(box);
+      return list().AddText({box.x, box.y}, ink(style.colours().quiet), text);
+    }
   }
 
   // Draws the name beside, above or below its dot where it is free, if need be over lines; far from the dot, joined to
-  // it by a line.
+  // it by a line; not at all where there is no room.
   void draw_name(std::size_t slot) {
     const ModelView& one = models.slots[slot];
     const ImVec2 dot = at(one.tick_ns(), one.errors.p99_error_over_jnd);
@@ -164,6 +123,7 @@ struct SpeedPlot {
     };
     int step = 0;
     while (step < 2 * kPlaces && !is_free(box_of(step % kPlaces), step >= kPlaces)) ++step;
+    if (step == 2 * kPlaces) return;
     const ImVec4 box = box_of(step % kPlaces);
     placed.push_back(box);
     const float edge = box.x > dot.x ? box.x : box.z, middle = 0.5F * (box.y + box.w);
@@ -174,19 +134,11 @@ struct SpeedPlot {
   }
 };
 
-void draw_budget(const ModelView& one, const ImU32 colour, const UiStyle& style) {
+void draw_budget(const ModelView& one, const Rgb& colour, const ImVec2& size) {
   const std::string text = fixed(one.tick_ns(), 0) + " ns = " + tick_share(one.tick_ns()) + " of 1 ms";
-  const ImVec2 at = ImGui::GetCursorScreenPos();
-  const float line = ImGui::GetTextLineHeight(), all = ImGui::GetContentRegionAvail().x;
-  const float left = at.x + 2.6F * ImGui::GetFontSize();
-  const float right = at.x + all - ImGui::CalcTextSize(text.c_str()).x - line;
-  ImDrawList& list = *ImGui::GetWindowDrawList();
-  list.AddRectFilled({left, at.y + 0.3F * line}, {right, at.y + 0.7F * line}, ink(style.colours().band));
-  list.AddRect({left, at.y + 0.3F * line}, {right, at.y + 0.7F * line}, ink(style.colours().edge));
-  const float used = std::max(1.5F, (right - left) * static_cast<float>(one.tick_ns() / kBudget_ns));
-  list.AddRectFilled({left, at.y + 0.2F * line}, {left + used, at.y + 0.8F * line}, colour);
-  list.AddText({right + 0.5F * line, at.y}, ink(style.colours().quiet), text.c_str());
-  ImGui::Dummy({all, line});
+  ImGui::PushStyleColor(ImGuiCol_PlotHistogram, paint(colour));
+  ImGui::ProgressBar(static_cast<float>(one.tick_ns() / kBudget_ns), size, text.c_str());
+  ImGui::PopStyleColor();
   tip("The bar is the 1 ms of a tick; the mark at its left is the time that this model takes of it.");
 }
 
@@ -216,14 +168,36 @@ PlotAxes speed_axes(const ModelsView& models) {
   return axes;
 }
 
-void draw_speed(const ModelsView& models, const UiStyle& style, float height) {
+void draw_against_force(const ModelsView& models, const UiStyle& style, const ImVec2& size) {
+  constexpr std::uint64_t kFewest = 20;  // samples of a bin with a useful deviation
+  const auto value = [](const ForceBin& bin) { return bin.over_jnd.mean() + bin.over_jnd.deviation(); };
+  double force_N = 1.0, most = 1.2;
+  for (const std::size_t slot : models.drawn()) {
+    for (const ForceBin& bin : models.slots[slot].errors.bins) {
+      if (bin.over_jnd.count() < kFewest) continue;
+      force_N = std::max(force_N, bin.force_to_N);
+      most = std::max(most, value(bin));
+    }
+  }
+  const LivePlot plot(style, size, {{0.0, force_N}, {0.0, round_up(most)}, "N", ""});
+  plot.jnd_band(0.0, 1.0);
+  for (const std::size_t slot : models.drawn()) {
+    std::vector<ImVec2> points;
+    for (const ForceBin& bin : models.slots[slot].errors.bins)
+      if (bin.over_jnd.count() >= kFewest)
+        points.emplace_back(plot.x_px(0.5 * (bin.force_from_N + bin.force_to_N)), plot.y_px(value(bin)));
+    plot.line(points, ink(slot_colour(models, slot, style.theme())),
+              (slot == models.selected ? 2.0F : 1.4F) * style.scale(), slot_dashes(models, slot));
+  }
+}
+
+void draw_speed(const ModelsView& models, const UiStyle& style, const ImVec2& size) {
   const PlotAxes axes = speed_axes(models);
   const float budget = ImGui::GetTextLineHeightWithSpacing();
   {
-    const LivePlot plot(style, {ImGui::GetContentRegionAvail().x, height - budget}, axes);
+    const LivePlot plot(style, {size.x, size.y - budget}, axes);
     plot.jnd_band(axes.y.from, 0.0);
-    SpeedPlot drawing{models, style, plot, axes};
-    drawing.draw_grid();
+    SpeedPlot drawing{models, style, plot};
     plot.level(0.0, ink(style.colours().text), 1.5F * style.scale());
     std::vector<std::size_t> dots = models.drawn();
     std::erase_if(dots, [&](std::size_t slot) { return !has_dot(models, slot); });
@@ -240,7 +214,7 @@ void draw_speed(const ModelsView& models, const UiStyle& style, float height) {
       "Both values are columns of the table.");
   const std::size_t named = models.verdict.chosen.value_or(models.selected);
   if (named < models.slots.size() && has_dot(models, named))
-    draw_budget(models.slots[named], ink(slot_colour(models, named, style.theme())), style);
+    draw_budget(models.slots[named], slot_colour(models, named, style.theme()), {size.x, ImGui::GetTextLineHeight()});
 }
 
 }  // namespace palpate

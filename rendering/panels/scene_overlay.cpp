@@ -84,7 +84,7 @@ struct Overlay {
   // Draws the sliders that scale the rendered force. Returns the y below them.
   float draw_feel(float top_px) const {
     ImGui::SetNextWindowPos({area.at.x + 2.0F, top_px});
-    ImGui::Begin("feel", nullptr, kFloating);
+    ImGui::Begin("over feel", nullptr, kFloating);
     auto stiffness = static_cast<float>(shown.scale.stiffness);
     auto damping = static_cast<float>(shown.scale.damping_Ns_per_m);
     ImGui::PushItemWidth(0.28F * area.size.x);
@@ -104,7 +104,7 @@ struct Overlay {
 
   void draw_title() const {
     ImGui::SetNextWindowPos({area.at.x + 2.0F, area.at.y + 2.0F});
-    ImGui::Begin("title", nullptr, kFloating);
+    ImGui::Begin("over title", nullptr, kFloating);
     ImGui::TextUnformatted(shown.title.c_str());
     tip(shown.description.c_str());
     ImGui::SameLine(0.0F, ImGui::GetFontSize());
@@ -239,7 +239,7 @@ struct Overlay {
 
   void draw_buttons() const {
     ImGui::SetNextWindowPos({area.at.x + 2.0F, area.at.y + area.size.y - 2.0F}, ImGuiCond_Always, {0.0F, 1.0F});
-    ImGui::Begin("buttons", nullptr, kFloating);
+    ImGui::Begin("over buttons", nullptr, kFloating);
     const float side = button_px(style);
     int place = 0;
     const auto show_focus = [&] {
@@ -273,7 +273,7 @@ struct Overlay {
     const ReplayView& replay = *shown.replay;
     ImGui::SetNextWindowPos({area.at.x + 2.0F, area.at.y + area.size.y - lift}, ImGuiCond_Always, {0.0F, 1.0F});
     ImGui::SetNextWindowSize({area.size.x - 4.0F, 0.0F});
-    ImGui::Begin("replay", nullptr, kFloating & ~ImGuiWindowFlags_AlwaysAutoResize);
+    ImGui::Begin("over replay", nullptr, kFloating & ~ImGuiWindowFlags_AlwaysAutoResize);
     for (const WindowCommand& command : commands) {
       if (command.label.empty() || !command.replay) continue;
       if (command_button(command)) command.run(0);
@@ -353,8 +353,10 @@ struct Overlay {
       if (corner) y -= size.y + 2.0F * pad;
       const float x =
           corner ? area.at.x + area.size.x - size.x - 2.0F * pad : area.at.x + 0.5F * (area.size.x - size.x);
-      draw_plate(list(), {x, y + pad}, size, {pad, 0.5F * pad}, ink(colours().raised), stripe);
-      text_at(fonts().body, {x, y + pad}, text_ink(false), text, wrap);
+      ImDrawList& where =
+          corner || view.dialogs.any() ? list() : *ImGui::GetForegroundDrawList();  // in front of what moves
+      draw_plate(where, {x, y + pad}, size, {pad, 0.5F * pad}, ink(colours().raised), stripe);
+      where.AddText(fonts().body, line(), {x, y + pad}, text_ink(false), text.c_str(), nullptr, wrap);
       if (!corner) y += size.y + 2.0F * pad;
     }
   }

@@ -86,14 +86,6 @@ void CurveColumns::find_highest() {
   }
 }
 
-const CurveColumn* CurveColumns::at(double time_s) const noexcept {
-  if (columns_.empty()) return nullptr;
-  const double place = time_s / width_s_ - first_;
-  if (!(place >= 0.0) || place >= static_cast<double>(columns_.size())) return nullptr;
-  const CurveColumn& column = columns_[static_cast<std::size_t>(place)];
-  return column.any ? &column : nullptr;
-}
-
 TimePlot::TimePlot(const UiStyle& style, const ImVec2& size, const Range& y, const char* y_unit, CurveTime& time,
                    double end_s, const CurveColumns& columns)
     : LivePlot(style, size, {{end_s - time.shown_s - time.zero_s, end_s - time.zero_s}, y, "s", y_unit, false, 0.0}),
@@ -215,10 +207,15 @@ void TimePlot::draw_readings(const std::vector<CurveReading>& readings) const {
     width = std::max(width, ImGui::CalcTextSize(reading.text.c_str()).x + line);
   const float pad = 0.4F * line;
   const float mouse_px = time_px(time_.hover_s);
-  // The text is on the side with more room, so that it does not hide the curve under the mouse.
+  const ImVec2 size(width + 2.0F * pad, line * static_cast<float>(readings.size() + 1) + 2.0F * pad);
+  // The text is on the side with more room, so that it does not hide the curve under the mouse; beside the panel where
+  // it would hide other plots.
   const bool at_left = mouse_px > 0.5F * (left() + right());
-  const ImVec2 low(at_left ? mouse_px - width - 3.0F * pad : mouse_px + pad, top());
-  const ImVec2 high(low.x + width + 2.0F * pad, low.y + line * static_cast<float>(readings.size() + 1) + 2.0F * pad);
+  const ImVec2 low(size.y > bottom() - top() + line ? std::max(0.0F, ImGui::GetWindowPos().x - size.x)
+                   : at_left                        ? mouse_px - size.x - pad
+                                                    : mouse_px + pad,
+                   top());
+  const ImVec2 high(low.x + size.x, low.y + size.y);
   ImDrawList& front = *ImGui::GetForegroundDrawList();
   front.AddRectFilled(low, high, ink(style_.colours().panel, 0.92F), 4.0F);
   front.AddRect(low, high, ink(style_.colours().grid), 4.0F);

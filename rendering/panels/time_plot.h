@@ -26,8 +26,7 @@ struct CurveColumn {
   HistoryPoint tick;
   float jnd_N = kMissing;  // at that tick; NaN: no reference
   // By slot: extremes of (model - reference) / JND, signed; 0 out of contact, NaN without a force or a comparison.
-  std::array<float, kMaxModels> low_over_jnd = no_values();
-  std::array<float, kMaxModels> high_over_jnd = no_values();
+  std::array<float, kMaxModels> low_over_jnd = no_values(), high_over_jnd = no_values();
 };
 
 // The error (95 %) that the active model predicts of its force, 0 out of contact; NaN: there is none, or there is a
@@ -43,8 +42,6 @@ class CurveColumns {
               std::size_t count);
 
   const std::vector<CurveColumn>& columns() const noexcept { return columns_; }
-  // The column at a time; null: there is none, or it has no ticks.
-  const CurveColumn* at(double time_s) const noexcept;
   // The largest over all columns and slots; 0 without ticks.
   float highest_force_N() const noexcept { return highest_force_N_; }
 

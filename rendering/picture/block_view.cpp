@@ -237,7 +237,8 @@ Viewport BlockView::part_around(const glm::vec3& low, const glm::vec3& high) con
   return grown(least, most, cell_);
 }
 
-void BlockView::draw(const std::vector<BlockPose>& blocks, const Viewport& viewport, Theme theme) {
+void BlockView::draw(const std::vector<BlockPose>& blocks, const Viewport& viewport, Theme theme, bool new_texts,
+                     const std::function<void()>& texts) {
   if (viewport.width < 1 || viewport.height < 1 || blocks.empty()) return;
   const int width = viewport.width, height = viewport.height;
   const glm::vec2 size(width, height);
@@ -248,13 +249,20 @@ void BlockView::draw(const std::vector<BlockPose>& blocks, const Viewport& viewp
   px_per_m_ = glm::length(in_cell({0.0F, 0.01F, 0.0F}) - in_cell(glm::vec3(0.0F))) / 0.01F;
   glFrontFace(GL_CW);  // the first row is the upper one
   const Still now{view_projection_, width, height, blocks.size(), theme, above_, below_};
-  if (now != still_) {
+  const Viewport whole{0, 0, width, height};
+  const bool moved = now != still_;
+  if (moved) {
     still_ = now;
     draw_still(blocks.size(), theme);
   }
+  if (moved || new_texts) {
+    lettered_.draw_into(width, height);
+    still_pixels_.copy_to(&lettered_, whole, whole);
+    lettered_.draw_into(width, height);
+    if (texts) texts();
+  }
   pixels_.draw_into(width, height);
-  const Viewport whole{0, 0, width, height};
-  still_pixels_.copy_to(&pixels_, whole, whole);
+  lettered_.copy_to(&pixels_, whole, whole);
   pixels_.draw_into(width, height);
   for (std::size_t i = 0; i < blocks.size(); ++i) {
     const glm::vec2 at = corner(i, blocks.size(), grid, size);

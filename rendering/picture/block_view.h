@@ -3,6 +3,7 @@
 // thread of the OpenGL context.
 #pragma once
 
+#include <functional>
 #include <glm/mat4x4.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
@@ -94,8 +95,10 @@ class BlockView {
   void leave_free(float above, float below) noexcept { above_ = above, below_ = below; }
   // Arranges `count` blocks in a picture of `size` and turns the camera to them, with a transition unless `at_once`.
   void show(std::size_t count, const glm::vec2& size, bool at_once);
-  // Draws 1 to kMostBlocks blocks into a part of the window, with the origin at its lower left corner.
-  void draw(const std::vector<BlockPose>& blocks, const Viewport& viewport, Theme theme);
+  // Draws 1 to kMostBlocks blocks into a part of the window, with the origin at its lower left corner. `texts` draws
+  // over the parts at rest and under those that move; it is called only where they change or if `new_texts`.
+  void draw(const std::vector<BlockPose>& blocks, const Viewport& viewport, Theme theme, bool new_texts = false,
+            const std::function<void()>& texts = {});
 
   Camera& camera() noexcept { return camera_; }
 
@@ -180,8 +183,9 @@ class BlockView {
   // Moving parts.
   GpuMesh middle_, moving_section_, line_;
   Camera camera_;
-  // A cell with twice the pixels per side; the static parts of all cells; the picture; the tool, also twice.
-  Pixels fine_{true}, still_pixels_{false}, pixels_{false}, tool_{true};
+  // A cell with twice the pixels per side; the static parts of all cells, without and with texts; the picture; the
+  // tool, also twice.
+  Pixels fine_{true}, still_pixels_{false}, lettered_{false}, pixels_{false}, tool_{true};
   Still still_;
   glm::mat4 view_projection_{1.0F};
   glm::vec2 cell_{1.0F};  // pixels

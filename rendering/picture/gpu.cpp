@@ -107,14 +107,13 @@ void Pixels::make() {
   glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, depth_);
 }
 
-bool Pixels::draw_into(int width, int height) {
+void Pixels::draw_into(int width, int height) {
   const bool same = framebuffer_ != 0 && width == width_ && height == height_;
   width_ = width;
   height_ = height;
   if (!same) make();
   glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_);
   glViewport(0, 0, width, height);
-  return !same;
 }
 
 void Pixels::copy_to(const Pixels* other, const Viewport& from, const Viewport& to) const {

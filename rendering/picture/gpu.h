@@ -97,8 +97,8 @@ class Pixels {
   Pixels& operator=(const Pixels&) = delete;
   ~Pixels() { release(); }
 
-  // Makes it the target of drawing. The contents are kept unless the size changes; returns whether it has.
-  bool draw_into(int width, int height);
+  // Makes it the target of drawing. The contents are kept unless the size changes.
+  void draw_into(int width, int height);
   // Copies `from` to `to` of another one, or to `to` of the window (`other` null) with the origin at the lower left
   // corner of the window. Interpolates if the sizes differ. The target of drawing is undefined afterwards.
   void copy_to(const Pixels* other, const Viewport& from, const Viewport& to) const;

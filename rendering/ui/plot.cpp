@@ -76,49 +76,61 @@ double LivePlot::x_at(float px) const noexcept {
 
 bool LivePlot::hovered() const noexcept { return ImGui::IsMouseHoveringRect(low_, high_) && ImGui::IsWindowHovered(); }
 
-double LivePlot::shown(double value) const noexcept {
-  if (axes_.decades) return std::pow(10.0, std::round(value));
-  return std::abs(value) < 1e-9 ? 0.0 : value;
+std::vector<double> LivePlot::ticks(const Range& range, int most) const {
+  std::vector<double> values;
+  if (axes_.decades) {
+    std::vector<double> marks{1.0, 2.0, 5.0};
+    if (range.to - range.from < 0.6) marks = {1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0};
+    for (double decade = std::floor(range.from); decade <= range.to; decade += 1.0)
+      for (const double mark : marks) values.push_back(decade + std::log10(mark));
+    std::erase_if(values, [&](double value) { return value < range.from || value > range.to; });
+    return values;
+  }
+  const double step = tick_step(range.to - range.from, most), first = std::ceil(range.from / step - 1e-9);
+  for (double i = first; i * step <= range.to + 1e-9 * step; i += 1.0) values.push_back(i * step + 0.0);  // no -0
+  return values;
+}
+
+std::string LivePlot::label(double value, const char* unit) const {
+  char text[48];
+  std::snprintf(text, sizeof text, "%.7g%s%s", axes_.decades ? std::pow(10.0, value) : value, *unit == '\0' ? "" : " ",
+                unit);
+  return text;
 }
 
 void LivePlot::draw_y_axis() const {
-  const Range& y_range = axes_.y;
   const float line = ImGui::GetFontSize();
-  char text[48];
-  const int rows = std::max(1, static_cast<int>((high_.y - low_.y) / (1.7F * line)));
-  const double y_step = axes_.decades ? 1.0 : tick_step(y_range.to - y_range.from, rows);
-  for (double y = std::ceil(y_range.from / y_step - 1e-9) * y_step; y <= y_range.to + 1e-9 * y_step; y += y_step) {
-    list_->AddLine({low_.x, std::round(y_px(y))}, {high_.x, std::round(y_px(y))}, ink(style_.colours().grid));
-    const bool last = y + y_step > y_range.to + 1e-9 * y_step;
-    std::snprintf(text, sizeof text, "%g%s%s", shown(y), last && *axes_.y_unit != '\0' ? " " : "",
-                  last ? axes_.y_unit : "");
-    const ImVec2 size = ImGui::CalcTextSize(text);
-    list_->AddText({low_.x - size.x - 0.3F * line, y_px(y) - 0.55F * line}, ink(style_.colours().quiet), text);
+  const auto values = ticks(axes_.y, std::max(1, static_cast<int>((high_.y - low_.y) / (1.7F * line))));
+  float below_px = high_.y + 2.0F * line;
+  for (const double y : values) {
+    const float at = y_px(y);
+    list_->AddLine({low_.x, std::round(at)}, {high_.x, std::round(at)}, ink(style_.colours().grid));
+    // A label without room is left out; those of whole decades come first.
+    const bool beside_decade = axes_.decades && y != std::round(y) && std::abs(at - y_px(std::round(y))) < 1.1F * line;
+    if (beside_decade || below_px - at < 1.1F * line) continue;
+    below_px = at;
+    const std::string text = label(y, y == values.back() ? axes_.y_unit : "");
+    list_->AddText({low_.x - ImGui::CalcTextSize(text.c_str()).x - 0.3F * line, at - 0.55F * line},
+                   ink(style_.colours().quiet), text.c_str());
   }
 }
 
 void LivePlot::draw_x_axis() const {
-  const Range& x_range = axes_.x;
   const float line = ImGui::GetFontSize();
-  char text[48];
-  const int columns = std::max(1, static_cast<int>(width() / (4.0F * line)));
-  const double x_step = axes_.decades ? 1.0 : tick_step(x_range.to - x_range.from, columns);
-  // From the right, because the last label has the unit. A label without room is left out.
-  const double first = std::ceil(x_range.from / x_step - 1e-9) * x_step;
-  const double steps = std::floor((x_range.to - first) / x_step + 1e-9);
+  auto values = ticks(axes_.x, std::max(1, static_cast<int>(width() / (4.0F * line))));
+  std::ranges::reverse(values);  // from the right, because the last label has the unit
   float free_px = high_.x + 2.0F * line;
-  bool unit_follows = true;
-  for (double i = steps; i >= 0.0; i -= 1.0) {
-    const double x = first + i * x_step;
+  const char* unit = axes_.x_unit;
+  for (const double x : values) {
     list_->AddLine({std::round(x_px(x)), low_.y}, {std::round(x_px(x)), high_.y}, ink(style_.colours().grid));
     if (x < axes_.x_least) continue;
-    std::snprintf(text, sizeof text, "%.7g%s%s", shown(x), unit_follows ? " " : "", unit_follows ? axes_.x_unit : "");
-    const ImVec2 size = ImGui::CalcTextSize(text);
-    const float at = std::clamp(x_px(x) - 0.5F * size.x, low_.x - 1.5F * line, high_.x + 0.6F * line - size.x);
-    if (at + size.x + 0.4F * line > free_px) continue;
+    const std::string text = label(x, unit);
+    const float wide = ImGui::CalcTextSize(text.c_str()).x;
+    const float at = std::clamp(x_px(x) - 0.5F * wide, low_.x - 1.5F * line, high_.x + 0.6F * line - wide);
+    if (at + wide + 0.4F * line > free_px) continue;
     free_px = at;
-    unit_follows = false;
-    list_->AddText({at, high_.y + 0.15F * line}, ink(style_.colours().quiet), text);
+    unit = "";
+    list_->AddText({at, high_.y + 0.15F * line}, ink(style_.colours().quiet), text.c_str());
   }
 }
 

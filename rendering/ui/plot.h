@@ -4,6 +4,7 @@
 
 #include <imgui.h>
 
+#include <string>
 #include <vector>
 
 #include "rendering/ui/ui.h"
@@ -69,7 +70,8 @@ class LivePlot {
   const UiStyle& style_;
 
  private:
-  double shown(double value) const noexcept;  // the number of a label
+  std::vector<double> ticks(const Range& range, int most) const;  // about `most`, in decades those of 1, 2 and 5
+  std::string label(double value, const char* unit) const;
   void draw_y_axis() const;
   void dashed(const std::vector<ImVec2>& points, ImU32 colour, float thickness, const Dashes& dashes,
               float start_px) const;

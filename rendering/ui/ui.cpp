@@ -35,24 +35,26 @@ constexpr const char* kFontFiles[] = {
 constexpr ImWchar kGlyphs[] = {0x20,   0xFF,   0x2013, 0x2026, 0x2190, 0x2193, 0x2264,
                                0x2265, 0x25A0, 0x25CF, 0x3BC,  0x3C4,  0};
 
-// Draws the lists of the panel, or all others.
-void draw_lists(bool of_panel, ImDrawData data) {
-  std::vector<ImDrawList*> lists;
-  for (int i = 0; i < data.CmdListsCount; ++i) {
-    const char* owner = data.CmdLists[i]->_OwnerName;
-    const bool panel = owner != nullptr && std::string_view(owner).rfind(kPanelWindow, 0) == 0;
-    if (panel == of_panel) lists.push_back(data.CmdLists[i]);
-  }
-  // In the panel's picture, y points down.
+UiLayer layer_of(const ImDrawList& list) {
+  const std::string_view owner = list._OwnerName != nullptr ? list._OwnerName : "";
+  if (owner.rfind(kPanelWindow, 0) == 0) return UiLayer::panel;
+  return owner.rfind(kOverPicture, 0) == 0 || owner == "##Background" ? UiLayer::over_picture : UiLayer::front;
+}
+
+// `flipped`: y points down in the framebuffer.
+void draw_lists(UiLayer layer, ImDrawData data, bool flipped) {
+  std::vector<ImDrawList*> lists(data.CmdLists, data.CmdLists + data.CmdListsCount);
+  std::erase_if(lists, [&](const ImDrawList* list) { return layer_of(*list) != layer; });
+  if (lists.empty()) return;
   const auto flip = [&] {
     for (ImDrawList* list : lists)
       for (ImDrawCmd& command : list->CmdBuffer) std::swap(command.ClipRect.y, command.ClipRect.w);
   };
   data.CmdLists = lists.data();
   data.CmdListsCount = static_cast<int>(lists.size());
-  if (of_panel) flip();
+  if (flipped) flip();
   ImGui_ImplOpenGL3_RenderDrawData(&data);
-  if (of_panel) flip();
+  if (flipped) flip();
 }
 
 }  // namespace
@@ -72,17 +74,16 @@ float ui_scale(const UiSize& size, float larger) noexcept {
   return unit * kScaleStep * std::round(scale / kScaleStep);
 }
 
-bool UiStyle::update(const UiSize& size, float larger, Theme theme, float body_px) {
+void UiStyle::update(const UiSize& size, float larger, Theme theme, float body_px) {
   const float wanted = ui_scale(size, larger);
   const bool resized = wanted != scale_ || size.pixels_per_unit != pixels_per_unit_ || body_px != body_px_;
-  if (!resized && theme == theme_) return false;
+  if (!resized && theme == theme_) return;
   scale_ = wanted;
   pixels_per_unit_ = size.pixels_per_unit;
   body_px_ = body_px;
   theme_ = theme;
   if (resized) build_fonts();
   set_colours();
-  return true;
 }
 
 // Builds fonts in pixels of the framebuffer, so that they are sharp; they are drawn in units of the window.
@@ -169,19 +170,14 @@ void UiContext::begin_frame(const std::vector<int>& tapped) {
   report(false);
 }
 
-void UiContext::end_frame() {
-  ImGui::Render();
-  ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
-}
-
-void UiContext::draw_panel(const ImVec2& at, const ImVec2& size) {
+void UiContext::draw_layer(UiLayer layer, const ImVec2& at, const ImVec2& size) {
   ImDrawData data = *ImGui::GetDrawData();
   data.DisplayPos = {at.x, at.y + size.y};
   data.DisplaySize = {size.x, -size.y};
   data.FramebufferScale.y = -data.FramebufferScale.y;
-  draw_lists(true, data);
+  draw_lists(layer, data, true);
 }
 
-void UiContext::draw_others() { draw_lists(false, *ImGui::GetDrawData()); }
+void UiContext::draw_front() { draw_lists(UiLayer::front, *ImGui::GetDrawData(), false); }
 
 }  // namespace palpate

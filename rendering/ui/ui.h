@@ -52,8 +52,8 @@ std::string find_font();
 class UiStyle {
  public:
   // Call it before each frame (UiContext::begin_frame). Rebuilds the fonts when the scale has changed, and sets the
-  // colours when the theme has changed. Returns whether one has.
-  bool update(const UiSize& size, float larger, Theme theme, float body_px = kBody_px);
+  // colours when the theme has changed.
+  void update(const UiSize& size, float larger, Theme theme, float body_px = kBody_px);
 
   const Fonts& fonts() const noexcept { return fonts_; }
   float scale() const noexcept { return scale_; }  // of ui_scale
@@ -77,9 +77,12 @@ struct Viewport {
   bool operator==(const Viewport&) const = default;
 };
 
-// The ImGui window beside the picture. It has most of the texts and curves, which are drawn into a picture of their
-// own.
+// Layers of ImGui windows, by the beginnings of their names: beside the picture; over its parts at rest, with the
+// background list; in front of everything. The first two are drawn into pictures of their own and copied, because to
+// draw a letter costs a software renderer more.
+enum class UiLayer { panel, over_picture, front };
 inline constexpr const char* kPanelWindow = "panel";
+inline constexpr const char* kOverPicture = "over ";
 
 class UiContext {
  public:
@@ -91,12 +94,10 @@ class UiContext {
 
   // `tapped`: keys of GLFW that were pressed and released since the last frame.
   void begin_frame(const std::vector<int>& tapped = {});
-  // Draws all widgets since `begin_frame`.
-  void end_frame();
-  // After ImGui::Render, any number of times. Draws the widgets of kPanelWindow into a framebuffer that has the size of
-  // the panel, with the upper row first; and all others into the window.
-  static void draw_panel(const ImVec2& at, const ImVec2& size);
-  static void draw_others();
+  // After ImGui::Render, any number of times. Draws a layer into a framebuffer that shows this part of the window, with
+  // the upper row first; UiLayer::front into the window itself.
+  static void draw_layer(UiLayer layer, const ImVec2& at, const ImVec2& size);
+  static void draw_front();
 
  private:
   GLFWwindow* window_;

@@ -19,9 +19,9 @@ namespace palpate {
 namespace {
 
 constexpr std::size_t kSnapshotsAtOnce = 256;
-// Time before a tick in which the loop rehearses it: a real-time thread wakes up about 30 us late, and each of the two
-// rehearsals of seven models takes 15 us. What is left is spun away, so more would cost processor time.
-constexpr std::int64_t kRehearse_ns = 70'000;
+// Time before a tick in which the loop rehearses it twice, in 10 us each with six models. What is left is spun away: 10
+// us more cost 1 % of a processor.
+constexpr std::int64_t kRehearse_ns = 45'000;
 constexpr double kLeastContact_s = 1.0;  // for a verdict on the user's own presses
 constexpr double kJudged_s = 2.0;        // between two such verdicts
 // The number is limited, so that a device that fails all day does not fill the disk.

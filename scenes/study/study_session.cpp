@@ -25,13 +25,13 @@ const char* question(bool strokes) {
 std::string consent_text(bool strokes) {
   return std::string(
              "In this study you hold a device that pushes gently against your hand, with at most 4 N (the weight of "
-             "400 g). ") +
+             "400\u00A0g). ") +
          (strokes ? "Each time you feel three pushes, one after the other, and say which of the last two was like the "
                     "first."
                   : "Each time you feel two pushes, one after the other, and say which was the larger.") +
          " Hold your hand still. There are breaks.\n"
          "Stored are your answers, how long they took and the code that you were given; not your name.\n"
-         "Taking part is voluntary. You can stop at any time and without a reason with the abort key; the "
+         "Taking part is voluntary. You can stop at any time and without a reason (Esc, then E); the "
          "force then goes away at once.\n"
          "Do you agree to take part?";
 }

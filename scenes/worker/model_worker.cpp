@@ -41,12 +41,25 @@ Result<ModelRequest> request_of(const Scene& scene, const std::string& asked) {
   return ModelRequest{.plan = {}, .path = asked, .loaded = std::move(*model)};
 }
 
+// The name of a model of this method.
+std::string named(const Method& method, int centres, Base base = Base::force) {
+  return plan_name({.base = base, .method = &method, .centres = centres});
+}
+
 // The names of all plans on this base but that of the interpolation of every sample; on the force also the default.
 std::vector<std::string> plans_on(Base base) {
   std::vector<std::string> names;
   for (const ModelPlan& plan : all_plans())
     if (plan.base == base && plan.method != &kDirectMethod) names.push_back(plan_name(plan));
   if (base == Base::force) names.push_back(plan_name(ModelPlan{}));
+  return names;
+}
+
+const std::vector<int> kOfferedCentres{10, 20, 50, 100, 200};
+
+std::vector<std::string> sizes_of(const Method& method) {
+  std::vector<std::string> names;
+  for (const int centres : kOfferedCentres) names.push_back(named(method, centres));
   return names;
 }
 
@@ -59,7 +72,8 @@ std::string request_name(const ModelRequest& request) {
 const std::vector<MethodChoice>& method_choices() {
   static const std::vector<MethodChoice> all = [] {
     std::vector<MethodChoice> choices;
-    for (const ModelPlan& plan : all_plans()) choices.push_back({family_name(plan), plan.selects_centres()});
+    for (const ModelPlan& plan : all_plans())
+      choices.push_back({family_name(plan), plan.selects_centres() ? kOfferedCentres : std::vector<int>{0}});
     return choices;
   }();
   return all;
@@ -69,13 +83,12 @@ const std::vector<LineUp>& line_ups() {
   static const std::vector<LineUp> all = {
       {"Comparison", "the methods of Hoever & Harders (2009) with 100 centres, and this program's best",
        plans_on(Base::force)},
-      {"Sizes",
-       "the greedy method with 10 to 200 centres",
-       {"greedy-10", "greedy-20", "greedy-50", "greedy-100", "greedy-200"}},
+      {"Sizes", "the greedy method with 10 to 200 centres", sizes_of(kGreedyMethod)},
       {"Corrections", "the trend alone, and with the correction of each method", plans_on(Base::trend)},
       {"Direct",
        "the interpolation of every sample",
-       {kDirectMethod.name, kVoxelMethod.name, "trend+direct", "trend+greedy-100"}}};
+       {named(kDirectMethod, 0), named(kVoxelMethod, 0), named(kDirectMethod, 0, Base::trend),
+        plan_name(ModelPlan{})}}};
   return all;
 }
 
@@ -85,7 +98,7 @@ const LineUp* find_line_up(const std::string& name) {
 }
 
 const std::vector<std::string>& exhibit_models() {
-  static const std::vector<std::string> all{"kdtree-2", "random-20", "trend+greedy-100"};
+  static const std::vector<std::string> all{named(kKdTreeMethod, 2), named(kRandomMethod, 20), plan_name(ModelPlan{})};
   return all;
 }
 

@@ -52,8 +52,8 @@ const std::vector<std::string>& exhibit_models();
 
 // A method that a user may add to the comparison.
 struct MethodChoice {
-  std::string family;  // "trend+greedy"
-  bool takes_centres = false;
+  std::string family;        // "trend+greedy"
+  std::vector<int> centres;  // the numbers to choose from; 0: it takes none
 };
 const std::vector<MethodChoice>& method_choices();
 

@@ -196,7 +196,7 @@ TEST_F(DefaultStart, IsDrawnAtEverySizeInBothThemes) {
       const std::string path = (folder != nullptr ? std::string(folder) : folder_.path()) + "/" + name;
       ASSERT_TRUE(app_->screenshot(path, true).ok());
       EXPECT_EQ(read_picture(path).size, Size(width, height));
-      for (const char* part : {"title", "buttons", "panel"}) {
+      for (const char* part : {"over title", "over buttons", "panel"}) {
         const ImGuiWindow* window = ImGui::FindWindowByName(part);
         ASSERT_NE(window, nullptr) << part;
         EXPECT_LE(window->Pos.x + window->Size.x, static_cast<float>(width)) << part;

@@ -53,7 +53,7 @@ TEST_F(DemoCommandsTest, EveryRowIsReachedByItsKeysAndListedInTheHelp) {
 TEST_F(DemoCommandsTest, AButtonDoesWhatItsKeyDoes) {
   open("hand");
   frames(3);
-  ImGuiWindow* buttons = ImGui::FindWindowByName("buttons");
+  ImGuiWindow* buttons = ImGui::FindWindowByName("over buttons");
   ASSERT_NE(buttons, nullptr);
   glfwFocusWindow(app_->window().handle());
   // Moves the mouse to the first button, Open.
@@ -239,7 +239,7 @@ TEST_F(DemoCommandsTest, TheKeysAreListedInsideTheSmallestWindow) {
   for (const auto& [width, height] : {std::pair{900, 600}, std::pair{800, 480}, std::pair{800, 1050}}) {
     glfwSetWindowSize(app_->window().handle(), width, height);
     frames(8);
-    for (const char* name : {"Help", "Open a file", "buttons", "title"}) {
+    for (const char* name : {"Help", "Open a file", "over buttons", "over title"}) {
       const ImGuiWindow* window = ImGui::FindWindowByName(name);
       ASSERT_NE(window, nullptr) << name;
       EXPECT_GE(window->Pos.x, 0.0F) << name << " " << width;
@@ -255,7 +255,7 @@ TEST_F(DemoCommandsTest, TheForceInTheHandIsScaledUntilItIsSwitchedOff) {
   EXPECT_EQ(app_->session().controls().scale, ForceScale{});
   press(GLFW_KEY_F);
   EXPECT_TRUE(app_->view().scales_force);
-  EXPECT_NE(ImGui::FindWindowByName("feel"), nullptr);
+  EXPECT_NE(ImGui::FindWindowByName("over feel"), nullptr);
   app_->session().controls().scale = {2.0, 5.0};
   frames(2);
   press(GLFW_KEY_F);

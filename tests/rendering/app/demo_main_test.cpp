@@ -87,6 +87,20 @@ TEST_F(DemoMain, WhenTheDisplayGoesAwayTheProgramSavesItsResultsAndSaysSo) {
   }
 }
 
+// The game and the desktop are doubles.
+TEST_F(DemoMain, TheExhibitIsStartedThreeTimesWithoutBlanking) {
+  for (const auto& [name, line] : {std::pair("palpate-demo", "echo game $*; kill -SEGV $$"),
+                                   std::pair("gnome-session-inhibit", "echo inhibit $2; shift 2; exec \"$@\"")})
+    std::filesystem::permissions(folder_.with_file(name, std::string("#!/bin/sh\n") + line),
+                                 std::filesystem::perms(0755));
+  const ProgramRun run = run_program({PALPATE_SOURCE_DIR "/assets/package/palpate-exhibit", "--scene", "foam_block"},
+                                     {"PATH=" + folder_.path() + ":/usr/bin:/bin", "XDG_DATA_HOME=" + folder_.path()});
+  EXPECT_EQ(run.exit_code, 1);
+  const std::string inhibit = "inhibit idle:suspend\n", game = "game --kiosk --scene foam_block\n";
+  EXPECT_EQ(run.out, inhibit + inhibit + game + game + game);
+  EXPECT_NE(test::read_text(folder_.file("palpate/exhibit.log")).find("(3 of 3)"), std::string::npos);
+}
+
 TEST_F(DemoMain, WrongUsageIsExitCode2) {
   EXPECT_EQ(demo({"--sceen", "skin"}).exit_code, 2);
   EXPECT_EQ(demo({"--seconds", "soon"}).exit_code, 2);

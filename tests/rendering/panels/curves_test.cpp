@@ -81,19 +81,6 @@ TEST(CurveColumns, ScrollingGivesWhatAFreshStartGives) {
   }
 }
 
-// One tick with an error of 2 N among ticks of 0.1 N.
-TEST(CurveColumns, ASingleTickIsAPeak) {
-  const ForceHistory history = example();
-  CurveColumns curves;
-  const JndLine jnd;
-  curves.gather(history, jnd, 2, 100.0, 101.0, 50);
-  const CurveColumn* peak = curves.at(100.333);
-  ASSERT_NE(peak, nullptr);
-  EXPECT_NEAR(peak->high_over_jnd[0], 2.0 / jnd.at(1.0), 1e-4);
-  EXPECT_EQ(curves.at(99.0), nullptr);
-  EXPECT_EQ(curves.at(102.0), nullptr);
-}
-
 TEST(CurveColumns, WithoutAReferenceTheActiveModelPredictsItsError) {
   HistoryPoint point;
   point.in_contact = true;
