@@ -107,6 +107,9 @@ Claims claims_of(const ForeignColumn& column) {
   const std::vector<std::string> words = words_of(column.parts.name);
   Claims claims = name_claims(column, words);
   const auto& unit = column.parts.unit;
+  // "Position (N)" contradicts itself.
+  for (std::size_t role = 0; role < kRoles && unit; ++role)
+    if (claims[role] == kWholeName && claims[static_cast<std::size_t>(unit->quantity)] == 0) return {};
   for (std::size_t role = 0; role < kRoles; ++role) {
     if (unit) claims[role] = static_cast<std::size_t>(unit->quantity) == role ? claims[role] + kRightUnit : 0;
     // A unit that belongs to no role or is unknown ("Weg [%]"): a last choice, whose unit is then an error.
@@ -134,13 +137,6 @@ std::vector<std::size_t> strongest_columns(const std::vector<Claims>& claims, st
   for (std::size_t i = 0; i < claims.size(); ++i)
     if (claims[i][role] == strongest) best.push_back(i);
   return best;
-}
-
-// A role other than `role` that is the whole name of a column; kRoles: none.
-std::size_t contradicted_role(const ForeignColumn& column, std::size_t role) {
-  const Claims claims = name_claims(column, words_of(column.parts.name));
-  const auto whole = std::find(claims.begin(), claims.end(), kWholeName);
-  return claims[role] > 0 ? kRoles : static_cast<std::size_t>(whole - claims.begin());
 }
 
 std::string flag_for(std::size_t role, const std::string& what) {
@@ -192,13 +188,6 @@ NameAndUnit header_parts(std::string_view header) {
   return parts;
 }
 
-bool NamedRoles::contradicts(const NamedRoles& other) const {
-  const auto differs = [&](std::size_t role) {
-    return column[role] > 0 && other.column[role] > 0 && column[role] != other.column[role];
-  };
-  return differs(1) && differs(2);
-}
-
 NamedRoles named_roles(const Fields& fields) {
   std::vector<Claims> claims;
   for (const std::string_view field : fields)
@@ -208,7 +197,6 @@ NamedRoles named_roles(const Fields& fields) {
     const std::vector<std::size_t> best = strongest_columns(claims, role);
     if (best.empty()) continue;
     ++named.count;
-    named.strength += claims[best.front()][role];
     if (best.size() == 1) named.column[role] = best.front() + 1;
   }
   return named;
@@ -271,13 +259,7 @@ RoleChoice choose_columns(const std::vector<ForeignColumn>& columns, const RoleR
       choice.number[0] = best.front() + 1;  // unless they are one clock
       continue;
     }
-    const std::size_t index = best.front(), named = contradicted_role(columns[index], role);
-    if (named < kRoles) {
-      choice.problem = "found column \"" + printable(columns[index].header) + "\", named as a " + kRoleNames[named] +
-                       ", with the unit " + std::string(columns[index].parts.unit->name) + " of a " + kRoleNames[role];
-      offer(role, best);
-      return choice;
-    }
+    const std::size_t index = best.front();
     choice.number[role] = index + 1;
     excluded[index] = true;
   }
