@@ -9,8 +9,8 @@
 namespace palpate {
 namespace {
 
-// The words of each role. The claim of a column to a role is strongest if its whole name is one of the words, weaker if
-// one of its words is, and weakest if a word contains one (German compounds: "Standardkraft").
+// The words of each role. The claim of a column to a role is strongest if its whole name is one of the words, and
+// weaker if one of its words is.
 constexpr std::string_view kTimeWords =
     "time t zeit temps timestamp stamp seconds secs sec nsecs nanosec milliseconds elapsed x_value millis micros clock "
     "uhrzeit pruefzeit testzeit "
@@ -20,7 +20,8 @@ constexpr std::string_view kPositionWords =
     "allongement traversenweg standardweg verschiebung eindringtiefe tiefe hub deplacement enfoncement desplazamiento "
     "posicion recorrido profundidad \xE4\xBD\x8D\xE7\xA7\xBB height distance gap deflection encoder x y z";
 constexpr std::string_view kForceWords =
-    "force f kraft load last fn fx fy fz charge loadcell newton effort fuerza carga \xE5\x8A\x9B "
+    "force f kraft standardkraft pruefkraft normalkraft druckkraft load last fn fx fy fz charge loadcell newton effort "
+    "fuerza carga \xE5\x8A\x9B "
     "\xE8\xBD\xBD\xE8\x8D\xB7 \xE8\x8D\xB7\xE9\x87\x8D";
 // Words of columns that are never a position or a force, whatever else is in the name and whatever the unit.
 constexpr std::string_view kNeverWords =
@@ -39,7 +40,6 @@ constexpr std::string_view kSecondWords = "target desired setpoint soll sollwert
 
 constexpr int kWholeName = 6;
 constexpr int kOneWord = 4;
-constexpr int kInsideWord = 2;
 constexpr int kRightUnit = 3;
 constexpr int kSecondChoice = 3;  // subtracted
 
@@ -80,17 +80,7 @@ bool any_word_in(std::string_view list, const std::vector<std::string>& words) {
 int name_claim(std::string_view list, const std::string& name, const std::vector<std::string>& words) {
   // The name of an axis alone may be any quantity along it.
   if (is_word_of(list, name)) return name == "x" || name == "y" || name == "z" ? kOneWord : kWholeName;
-  if (any_word_in(list, words)) return kOneWord;
-  while (!list.empty()) {
-    const std::string_view known = list.substr(0, list.find(' '));
-    list.remove_prefix(std::min(known.size() + 1, list.size()));
-    for (const std::string& word : words) {
-      // Shorter words are parts of unrelated words.
-      if (known.size() >= 3 && word.size() > known.size() && (word.starts_with(known) || word.ends_with(known)))
-        return kInsideWord;
-    }
-  }
-  return 0;
+  return any_word_in(list, words) ? kOneWord : 0;
 }
 
 using Claims = std::array<int, kRoles>;

@@ -617,12 +617,7 @@ class Importer {
   Status compare_clocks() {
     if (number_[0] == 0 || slots_.empty() || !std::isfinite(own_s_.front()) || !std::isfinite(own_s_.back())) return {};
     if (!request_.columns[0].empty()) return {};
-    std::vector<std::size_t> others = other_times_;
-    for (std::size_t i = 0; i < columns_.size(); ++i)
-      if (columns_[i].is_clock && i + 1 != number_[0] && std::ranges::find(others, i + 1) == others.end() &&
-          columns_[i].values.front().find(':') != std::string::npos)
-        others.push_back(i + 1);
-    for (const std::size_t other : others) {
+    for (const std::size_t other : other_times_) {
       const ColumnTimes clock = clock_in_s(other);
       const std::vector<double>& seconds = clock.since_first;
       if (seconds.empty()) continue;

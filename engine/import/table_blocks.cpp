@@ -73,31 +73,24 @@ Marks read_as(const std::vector<std::string_view>& lines, const Delimiter& delim
   return best;
 }
 
-// Whether a comma in the numbers can only be a decimal mark: not followed by exactly three digits, or after a single 0
-// or more than three digits.
-bool proves_decimal_comma(std::string_view field) {
-  const std::size_t comma = field.find(',');
-  if (comma == std::string_view::npos) return false;
-  std::string_view whole = field.substr(0, comma);
-  if (!whole.empty() && (whole.front() == '-' || whole.front() == '+')) whole.remove_prefix(1);
-  const std::size_t end = std::min(field.find_first_not_of("0123456789", comma + 1), field.size());
-  return end - comma - 1 != 3 || whole.empty() || whole.front() == '0' || whole.size() > 3;
-}
-
+// Refuses numbers whose comma may be a thousands mark in every cell: "1,234", but not "0,123" or "1,5".
 Status check_decimal_comma(const std::vector<std::string_view>& lines, const TableLayout& layout) {
   Fields fields;
-  std::string_view example;
+  std::string example;
   for (const std::string_view line : lines) {
     if (!is_row(layout, line, fields)) continue;
-    for (const std::string_view field : fields) {
+    for (std::string_view field : fields) {
       double value = 0.0;
       if (field.find(',') == std::string_view::npos || !parse_table_number(field, ',', value)) continue;
-      if (proves_decimal_comma(field)) return {};
+      if (field.front() == '-' || field.front() == '+') field.remove_prefix(1);
+      std::string plain(field);
+      std::erase(plain, ',');
+      if (field.front() == '0' || with_thousands(plain) != field) return {};
       example = field;
     }
   }
   if (example.empty()) return {};
-  return Error{"found numbers such as " + std::string(example) +
+  return Error{"found numbers such as " + example +
                ", whose comma may be a decimal mark or a thousands mark; add --decimal comma, or export the "
                "numbers without thousands marks"};
 }
