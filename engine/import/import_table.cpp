@@ -140,10 +140,11 @@ class Importer {
   }
   // The plain numbers of a column; NaN where there is none.
   std::vector<double> numbers_of(std::size_t number) const {
-    std::vector<double> numbers;
-    for (const std::string_view cell : cells_of(number)) {
+    std::vector<double> numbers(slots_.size(), std::nan(""));
+    const Fields cells = number > 0 ? cells_of(number) : Fields();
+    for (std::size_t i = 0; i < cells.size(); ++i) {
       double value = 0.0;
-      numbers.push_back(parse_table_number(cell, layout_.decimal, value) ? value : std::nan(""));
+      if (parse_table_number(cells[i], layout_.decimal, value)) numbers[i] = value;
     }
     return numbers;
   }
@@ -248,32 +249,38 @@ class Importer {
   // Describes each column from all its rows.
   void measure_columns() {
     columns_.resize(layout_.columns);
-    for (std::size_t i = 0; i < columns_.size(); ++i) {
-      ForeignColumn& column = columns_[i];
-      const Fields cells = cells_of(i + 1);
-      column.header = layout_.names.empty() ? cells.front() : layout_.names[i];
-      if (!layout_.names.empty()) column.parts = header_parts(column.header);
-      if (!layout_.names.empty() && i < layout_.units.size()) {
-        const std::string_view text = layout_.units[i];
-        const auto unit = find_unit(text), stated = column.parts.unit;
-        if (unit && stated && unit->to_si != stated->to_si) column.other_unit = text;
-        if (unit && !stated) column.parts.unit = unit;
-        if (!unit && !stated && text.find_first_not_of("-[]() ") != std::string_view::npos)
-          column.parts.foreign_unit = text;
-      }
-      std::string_view above;
-      for (const std::string_view cell : cells) {
-        if (is_empty(cell) || cell == above) continue;
-        if (!above.empty()) ++column.changes;
-        above = cell;
+    Fields above(columns_.size()), fields;
+    for (const Slot& slot : slots_) {
+      if (!slot.is_row) continue;
+      split_table_fields(lines_[slot.line - 1], layout_.delimiter, fields);
+      for (std::size_t i = 0; i < std::min(columns_.size(), fields.size()); ++i) {
+        ForeignColumn& column = columns_[i];
+        const std::string_view cell = fields[i];
+        if (&slot == &slots_.front()) column.header = cell;
+        if (is_empty(cell) || cell == above[i]) continue;
+        if (!above[i].empty()) ++column.changes;
+        above[i] = cell;
         if (column.values.size() < kMostValues && std::ranges::find(column.values, cell) == column.values.end())
           column.values.emplace_back(cell);
         column.is_units = column.is_units && find_unit(cell);
         column.is_clock = column.is_clock && is_of_a_clock(cell);
         column.is_whole = column.is_whole && cell.find_first_not_of("-+0123456789") == std::string_view::npos;
       }
+    }
+    for (std::size_t i = 0; i < columns_.size(); ++i) {
+      ForeignColumn& column = columns_[i];
       column.constant = column.changes == 0;
       if (column.values.empty()) column.is_units = column.is_clock = column.is_whole = false;
+      if (layout_.names.empty()) continue;
+      column.header = layout_.names[i];
+      column.parts = header_parts(column.header);
+      if (i >= layout_.units.size()) continue;
+      const std::string_view text = layout_.units[i];
+      const auto unit = find_unit(text), stated = column.parts.unit;
+      if (unit && stated && unit->to_si != stated->to_si) column.other_unit = text;
+      if (unit && !stated) column.parts.unit = unit;
+      if (!unit && !stated && text.find_first_not_of("-[]() ") != std::string_view::npos)
+        column.parts.foreign_unit = text;
     }
   }
 

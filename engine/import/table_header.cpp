@@ -47,7 +47,7 @@ bool split_names(std::string_view line, std::string_view first_row, const TableL
     if (fits()) return true;
     names.clear();
     for (const std::string_view word : words) {
-      if (names.empty() || (word.front() != '[' && word.front() != '('))
+      if (names.empty() || (!word.starts_with('[') && !word.starts_with('(')))
         names.push_back(word);
       else
         names.back() = {names.back().data(), static_cast<std::size_t>(word.data() + word.size() - names.back().data())};
