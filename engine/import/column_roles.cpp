@@ -249,9 +249,8 @@ RoleChoice choose_columns(const std::vector<ForeignColumn>& columns, const RoleR
       choice.number[0] = best.front() + 1;  // unless they are one clock
       continue;
     }
-    const std::size_t index = best.front();
-    choice.number[role] = index + 1;
-    excluded[index] = true;
+    choice.number[role] = best.front() + 1;
+    excluded[best.front()] = true;
   }
   for (std::size_t a = 1; a < kRoles; ++a)
     for (std::size_t b = 0; b < a; ++b)
