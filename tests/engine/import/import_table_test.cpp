@@ -117,49 +117,20 @@ std::string table_of(const std::string& header, const std::string& pattern, int 
   for (int i = from; i < to; ++i) {
     const double t = kStep_s * (i - from);
     const int ms = 10 * (i - from);
-    for (std::size_t at = 0; at < pattern.size(); ++at) {
-      if (pattern[at] != '%') {
-        text += pattern[at];
-        continue;
-      }
-      switch (pattern[++at]) {
-        case 't':
-          text += fixed(t, 2);
-          break;
-        case 'm':
-          text += std::to_string(ms);
-          break;
-        case 'u':
-          text += fixed(t / 60.0, 7);
-          break;
-        case 'k':
-          text += std::to_string(638450000000000000LL + 10000LL * ms);
-          break;
-        case 'c':
-          text += "12:30:" + padded(ms / 1000, 2) + "." + padded(ms % 1000, 3);
-          break;
-        case 's':
-          text += std::to_string(1700000000 + ms / 1000);
-          break;
-        case 'p':
-          text += std::to_string(ms % 1000);
-          break;
-        case 'x':
-          text += fixed(position_mm(i), 3);
-          break;
-        case 'f':
-          text += fixed(force_N(i), 3);
-          break;
-        case 'g':
-          text += fixed(1e3 * force_N(i), 1);
-          break;
-        case 'b':
-          text += i % 2 == 0 ? "1" : "2";
-          break;
-        default:
-          text += std::to_string(i);
-      }
-    }
+    const std::map<char, std::string> cells = {{'t', fixed(t, 2)},
+                                               {'m', std::to_string(ms)},
+                                               {'u', fixed(t / 60.0, 7)},
+                                               {'k', std::to_string(638450000000000000LL + 10000LL * ms)},
+                                               {'c', "12:30:" + padded(ms / 1000, 2) + "." + padded(ms % 1000, 3)},
+                                               {'s', std::to_string(1700000000 + ms / 1000)},
+                                               {'p', std::to_string(ms % 1000)},
+                                               {'x', fixed(position_mm(i), 3)},
+                                               {'f', fixed(force_N(i), 3)},
+                                               {'g', fixed(1e3 * force_N(i), 1)},
+                                               {'b', i % 2 == 0 ? "1" : "2"},
+                                               {'i', std::to_string(i)}};
+    for (std::size_t at = 0; at < pattern.size(); ++at)
+      text += pattern[at] != '%' ? std::string(1, pattern[at]) : cells.at(pattern[++at]);
     text += "\n";
   }
   return text;
