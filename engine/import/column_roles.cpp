@@ -9,8 +9,8 @@
 namespace palpate {
 namespace {
 
-// The words of each role. The claim of a column to a role is strongest if its whole name is one of the words, weaker if
-// one of its words is, and weakest if a word contains one (German compounds: "Standardkraft").
+// The words of each role. The claim of a column to a role is strongest if its whole name is one of the words, and
+// weaker if one of its words is.
 constexpr std::string_view kTimeWords =
     "time t zeit temps timestamp stamp seconds secs sec nsecs nanosec milliseconds elapsed x_value millis micros clock "
     "uhrzeit pruefzeit testzeit "
@@ -20,7 +20,8 @@ constexpr std::string_view kPositionWords =
     "allongement traversenweg standardweg verschiebung eindringtiefe tiefe hub deplacement enfoncement desplazamiento "
     "posicion recorrido profundidad \xE4\xBD\x8D\xE7\xA7\xBB height distance gap deflection encoder x y z";
 constexpr std::string_view kForceWords =
-    "force f kraft load last fn fx fy fz charge loadcell newton effort fuerza carga \xE5\x8A\x9B "
+    "force f kraft standardkraft pruefkraft normalkraft druckkraft load last fn fx fy fz charge loadcell newton effort "
+    "fuerza carga \xE5\x8A\x9B "
     "\xE8\xBD\xBD\xE8\x8D\xB7 \xE8\x8D\xB7\xE9\x87\x8D";
 // Words of columns that are never a position or a force, whatever else is in the name and whatever the unit.
 constexpr std::string_view kNeverWords =
@@ -39,7 +40,6 @@ constexpr std::string_view kSecondWords = "target desired setpoint soll sollwert
 
 constexpr int kWholeName = 6;
 constexpr int kOneWord = 4;
-constexpr int kInsideWord = 2;
 constexpr int kRightUnit = 3;
 constexpr int kSecondChoice = 3;  // subtracted
 
@@ -80,17 +80,7 @@ bool any_word_in(std::string_view list, const std::vector<std::string>& words) {
 int name_claim(std::string_view list, const std::string& name, const std::vector<std::string>& words) {
   // The name of an axis alone may be any quantity along it.
   if (is_word_of(list, name)) return name == "x" || name == "y" || name == "z" ? kOneWord : kWholeName;
-  if (any_word_in(list, words)) return kOneWord;
-  while (!list.empty()) {
-    const std::string_view known = list.substr(0, list.find(' '));
-    list.remove_prefix(std::min(known.size() + 1, list.size()));
-    for (const std::string& word : words) {
-      // Shorter words are parts of unrelated words.
-      if (known.size() >= 3 && word.size() > known.size() && (word.starts_with(known) || word.ends_with(known)))
-        return kInsideWord;
-    }
-  }
-  return 0;
+  return any_word_in(list, words) ? kOneWord : 0;
 }
 
 using Claims = std::array<int, kRoles>;
@@ -107,6 +97,9 @@ Claims claims_of(const ForeignColumn& column) {
   const std::vector<std::string> words = words_of(column.parts.name);
   Claims claims = name_claims(column, words);
   const auto& unit = column.parts.unit;
+  // "Position (N)" contradicts itself.
+  for (std::size_t role = 0; role < kRoles && unit; ++role)
+    if (claims[role] == kWholeName && claims[static_cast<std::size_t>(unit->quantity)] == 0) return {};
   for (std::size_t role = 0; role < kRoles; ++role) {
     if (unit) claims[role] = static_cast<std::size_t>(unit->quantity) == role ? claims[role] + kRightUnit : 0;
     // A unit that belongs to no role or is unknown ("Weg [%]"): a last choice, whose unit is then an error.
@@ -134,13 +127,6 @@ std::vector<std::size_t> strongest_columns(const std::vector<Claims>& claims, st
   for (std::size_t i = 0; i < claims.size(); ++i)
     if (claims[i][role] == strongest) best.push_back(i);
   return best;
-}
-
-// A role other than `role` that is the whole name of a column; kRoles: none.
-std::size_t contradicted_role(const ForeignColumn& column, std::size_t role) {
-  const Claims claims = name_claims(column, words_of(column.parts.name));
-  const auto whole = std::find(claims.begin(), claims.end(), kWholeName);
-  return claims[role] > 0 ? kRoles : static_cast<std::size_t>(whole - claims.begin());
 }
 
 std::string flag_for(std::size_t role, const std::string& what) {
@@ -192,13 +178,6 @@ NameAndUnit header_parts(std::string_view header) {
   return parts;
 }
 
-bool NamedRoles::contradicts(const NamedRoles& other) const {
-  const auto differs = [&](std::size_t role) {
-    return column[role] > 0 && other.column[role] > 0 && column[role] != other.column[role];
-  };
-  return differs(1) && differs(2);
-}
-
 NamedRoles named_roles(const Fields& fields) {
   std::vector<Claims> claims;
   for (const std::string_view field : fields)
@@ -208,7 +187,6 @@ NamedRoles named_roles(const Fields& fields) {
     const std::vector<std::size_t> best = strongest_columns(claims, role);
     if (best.empty()) continue;
     ++named.count;
-    named.strength += claims[best.front()][role];
     if (best.size() == 1) named.column[role] = best.front() + 1;
   }
   return named;
@@ -271,15 +249,8 @@ RoleChoice choose_columns(const std::vector<ForeignColumn>& columns, const RoleR
       choice.number[0] = best.front() + 1;  // unless they are one clock
       continue;
     }
-    const std::size_t index = best.front(), named = contradicted_role(columns[index], role);
-    if (named < kRoles) {
-      choice.problem = "found column \"" + printable(columns[index].header) + "\", named as a " + kRoleNames[named] +
-                       ", with the unit " + std::string(columns[index].parts.unit->name) + " of a " + kRoleNames[role];
-      offer(role, best);
-      return choice;
-    }
-    choice.number[role] = index + 1;
-    excluded[index] = true;
+    choice.number[role] = best.front() + 1;
+    excluded[best.front()] = true;
   }
   for (std::size_t a = 1; a < kRoles; ++a)
     for (std::size_t b = 0; b < a; ++b)

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <filesystem>
 #include <iterator>
+#include <numeric>
 #include <utility>
 
 #include "engine/base/statistics.h"
@@ -13,8 +14,8 @@
 namespace palpate {
 namespace {
 
-// A channel is slower than the rows if it has no value in so many rows.
-constexpr std::uint64_t kSlowRows = 10;
+// Fewer rows do not show that a column counts them.
+constexpr std::size_t kCountedRows = 10;
 // A longer list of blocks is cut.
 constexpr std::size_t kMostReadings = 12;
 // A time that goes back by more steps begins another recording.
@@ -49,10 +50,10 @@ Error refusal(const std::string& path, const ImportRequest& request, const std::
   return Error{message};
 }
 
-// The values of one role at the times of its own clock.
+// One of two channels, at the times of its own clock.
 struct Channel {
   std::vector<double> times_s, values;
-  std::vector<std::uint64_t> lines;
+  std::vector<std::size_t> slots;
 
   double step_s() const {
     return (times_s.back() - times_s.front()) / static_cast<double>(std::max<std::size_t>(times_s.size() - 1, 1));
@@ -61,19 +62,11 @@ struct Channel {
   // second differences of the values beside allow.
   double at(double time_s, std::size_t& after, double& error) const {
     while (after + 1 < times_s.size() && times_s[after] < time_s) ++after;
-    const double step_s = times_s[after] - times_s[after - 1];
-    const double share = step_s > 0.0 ? (time_s - times_s[after - 1]) / step_s : 0.0;
+    const double share = (time_s - times_s[after - 1]) / (times_s[after] - times_s[after - 1]);
     for (std::size_t i = std::max<std::size_t>(after, 2); i <= std::min(after + 1, values.size() - 1); ++i)
       error = std::max(error, share * (1.0 - share) * std::abs(values[i] - 2.0 * values[i - 1] + values[i - 2]));
     return values[after - 1] + share * (values[after] - values[after - 1]);
   }
-};
-
-struct Row {
-  RecordingRow row;
-  std::uint64_t line = 0;
-  std::optional<double> own_s{};  // its time in the file
-  bool good = true;
 };
 
 class Importer {
@@ -93,10 +86,16 @@ class Importer {
   }
 
  private:
+  // A line that is a row in time. Without a clock it may be text, which keeps its place.
+  struct Slot {
+    std::size_t line = 0;  // from 1
+    bool is_row = true, good = true;
+  };
+
   Error fail(const std::string& text, const std::vector<Reading>& readings = {}) const {
     return refusal(path_, request_, ": " + text, readings);
   }
-  Error fail_at(std::uint64_t line, const std::string& text, const std::vector<Reading>& readings = {}) const {
+  Error fail_at(std::size_t line, const std::string& text, const std::vector<Reading>& readings = {}) const {
     return refusal(path_, request_, ":" + std::to_string(line) + ": " + text, readings);
   }
   void note(const std::string& sentence) { table_.notes.push_back(sentence); }
@@ -107,15 +106,48 @@ class Importer {
     found->rows += rows;
     found->lines.last = std::max(found->lines.last, line);
   }
-  std::string_view field(std::size_t number) const {  // of the present row
-    return number > 0 && number <= fields_.size() ? fields_[number - 1] : std::string_view();
-  }
-  bool is_empty(std::size_t number) const { return field(number).empty() || is_missing_value(field(number)); }
+  static bool is_empty(std::string_view cell) { return cell.empty() || is_missing_value(cell); }
   // ' "Weg [mm]"' for a message; empty without a header.
   std::string quoted_name(std::size_t number) const {
     return layout_.names.empty() ? "" : " \"" + printable(columns_[number - 1].header) + "\"";
   }
-  std::string the_columns() const { return "; the columns are " + list_columns(columns_); }
+  static Reading lines_reading(const LineRange& part, const std::string& meaning) {
+    return {"--rows " + std::to_string(part.first) + "-" + std::to_string(part.last), meaning};
+  }
+  // The lines of each part of the table: a new one begins where `differs(last slot, slot)`.
+  template <typename Differs, typename Counts, typename Meaning>
+  std::vector<Reading> parts_of(const Differs& differs, const Counts& counts, const Meaning& meaning) const {
+    std::vector<Reading> parts;
+    std::size_t first = slots_.size(), last = first;
+    const auto end = [&] { parts.push_back(lines_reading({slots_[first].line, slots_[last].line}, meaning(last))); };
+    for (std::size_t i = 0; i < slots_.size(); ++i) {
+      if (!counts(i)) continue;
+      if (last < i && differs(last, i)) end(), first = i;
+      first = std::min(first, i);
+      last = i;
+    }
+    end();
+    return parts;
+  }
+  // The cells of a column in every slot.
+  Fields cells_of(std::size_t number) const {
+    Fields cells, fields;
+    for (const Slot& slot : slots_) {
+      if (slot.is_row) split_table_fields(lines_[slot.line - 1], layout_.delimiter, fields);
+      cells.push_back(slot.is_row && number > 0 && number <= fields.size() ? fields[number - 1] : std::string_view());
+    }
+    return cells;
+  }
+  // The plain numbers of a column; NaN where there is none.
+  std::vector<double> numbers_of(std::size_t number) const {
+    std::vector<double> numbers(slots_.size(), std::nan(""));
+    const Fields cells = number > 0 ? cells_of(number) : Fields();
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+      double value = 0.0;
+      if (parse_table_number(cells[i], layout_.decimal, value)) numbers[i] = value;
+    }
+    return numbers;
+  }
 
   // Finds the block of rows that is the table.
   Status find_rows() {
@@ -130,13 +162,13 @@ class Importer {
     if (!layout) return fail(layout.error().message);
     layout_ = std::move(*layout);
     std::vector<Reading> readings;
-    std::size_t between = 0;
+    std::size_t between = 0, end = 0;
     for (RowBlock& block : layout_.blocks) {
       block.begin += before;
       block.end += before;
       if (!readings.empty())
-        for (std::size_t i = block.begin; !trimmed(lines_[i - 1]).empty() && i > end_of_block_; --i) ++between;
-      end_of_block_ = block.end;
+        for (std::size_t i = block.begin; !trimmed(lines_[i - 1]).empty() && i > end; --i) ++between;
+      end = block.end;
       readings.push_back({"--block " + std::to_string(readings.size() + 1),
                           lines_words({block.begin + 1, block.end}) + ": " + count_of(block.rows, "row") + " of " +
                               count_of(block.fields, "field")});
@@ -168,63 +200,65 @@ class Importer {
   // Refuses a header that does not determine the columns, unless the user gives their numbers.
   Status check_header() {
     if (!layout_.misfit && layout_.rival == 0) return {};
-    const auto first_role = request_.rate_Hz ? 1 : 0;
-    const bool decided = std::all_of(
-        request_.columns.begin() + first_role, request_.columns.end(),
-        [](const auto& name) { return !name.empty() && name.find_first_not_of("0123456789") == std::string::npos; });
-    const std::string advice = std::string("or say which column is which by their numbers: --columns ") +
-                               (first_role == 0 ? "time=N," : "") + "position=N,force=N";
-    if (!layout_.misfit) {
-      if (decided) return {};
-      const auto [upper, lower] = std::minmax(layout_.header, layout_.rival);
-      return fail_at(upper, "found names of columns in this line and in line " + std::to_string(lower) +
-                                " that put the position and the force into different columns, expected one header; "
-                                "remove the wrong line, " +
-                                advice);
-    }
     std::vector<std::string> names;
     for (const std::string_view name : layout_.names) names.push_back('"' + printable(name) + '"');
-    const std::string found = std::to_string(names.size()) + " names (" + joined(names) + "), but the rows from line " +
-                              std::to_string(block_.begin + 1) + " have " + count_of(layout_.columns, "field");
+    const auto [upper, lower] = std::minmax(layout_.header, layout_.rival);
+    const std::string found = layout_.rival > 0 ? "names of columns in this line and in line " + std::to_string(lower)
+                                                : std::to_string(names.size()) + " names (" + joined(names) +
+                                                      "), but the rows from line " + std::to_string(block_.begin + 1) +
+                                                      " have " + count_of(layout_.columns, "field");
+    const bool decided = std::all_of(
+        request_.columns.begin() + (request_.rate_Hz ? 1 : 0), request_.columns.end(),
+        [](const auto& name) { return !name.empty() && name.find_first_not_of("0123456789") == std::string::npos; });
     if (!decided)
-      return fail_at(layout_.header,
-                     "found a header of " + found + ", expected a name for each field; correct the header, " + advice);
+      return fail_at(layout_.rival > 0 ? upper : layout_.header,
+                     "found " + found +
+                         ", expected one header with a name for each field; correct it, or say which column is which "
+                         "by their numbers: --columns " +
+                         (request_.rate_Hz ? "" : "time=N,") + "position=N,force=N");
     note("warning: the header in line " + std::to_string(layout_.header) + " is not used: it has " + found);
     layout_.names.clear();
     layout_.header = 0;
     return {};
   }
 
+  // Lists the rows of the block. Without a clock every line is a row in time, also an empty one, unless each row has an
+  // empty line after it.
+  void list_rows() {
+    no_clock_ = request_.rate_Hz || !layout_.steps_s.empty();
+    const auto empty = std::count_if(lines_.begin() + static_cast<std::ptrdiff_t>(block_.begin),
+                                     lines_.begin() + static_cast<std::ptrdiff_t>(block_.end),
+                                     [](std::string_view line) { return trimmed(line).empty(); });
+    const bool empty_counts = no_clock_ && static_cast<std::size_t>(empty) + 1 < block_.rows;
+    Fields fields;
+    for (std::size_t i = block_.begin; i < block_.end; ++i) {
+      if (trimmed(lines_[i]).empty() && !empty_counts) continue;
+      if (lines_[i].starts_with('#')) {
+        leave_out("comments", i + 1);
+        continue;
+      }
+      const bool row = is_row(layout_, lines_[i], fields);
+      if (!row) leave_out("text between the rows", i + 1);
+      if (!row && texts_++ == 0) first_text_ = i + 1;
+      if (row || no_clock_) slots_.push_back({i + 1, row});
+    }
+    for (std::size_t i = block_.end; i < lines_.size() && !is_row(layout_, lines_[i], fields); ++i)
+      if (!trimmed(lines_[i]).empty() && layout_.blocks.size() == 1) leave_out("text after the table", i + 1);
+  }
+
   // Describes each column from all its rows.
   void measure_columns() {
     columns_.resize(layout_.columns);
-    for (std::size_t i = 0; i < columns_.size() && !layout_.names.empty(); ++i) {
-      ForeignColumn& column = columns_[i];
-      column.header = layout_.names[i];
-      column.parts = header_parts(column.header);
-      if (i >= layout_.units.size()) continue;
-      const std::string_view text = layout_.units[i];
-      const auto unit = find_unit(text);
-      const auto& stated = column.parts.unit;
-      if (unit && stated && unit->to_si != stated->to_si) column.other_unit = text;
-      if (unit && !stated) column.parts.unit = unit;
-      if (!unit && !stated && text.find_first_not_of("-[]() ") != std::string_view::npos)
-        column.parts.foreign_unit = text;
-    }
-    std::vector<std::string_view> above(columns_.size());
-    bool first = true;
-    for (std::size_t line = block_.begin; line < block_.end; ++line) {
-      if (!is_row(layout_, lines_[line], fields_)) continue;
-      for (std::size_t i = 0; i < columns_.size(); ++i) {
+    Fields above(columns_.size()), fields;
+    for (const Slot& slot : slots_) {
+      if (!slot.is_row) continue;
+      split_table_fields(lines_[slot.line - 1], layout_.delimiter, fields);
+      for (std::size_t i = 0; i < std::min(columns_.size(), fields.size()); ++i) {
         ForeignColumn& column = columns_[i];
-        const std::string_view cell = field(i + 1);
-        if (first && layout_.names.empty()) column.header = cell;
-        if (cell.empty() || is_missing_value(cell)) continue;
-        if (!above[i].empty() && cell == above[i]) continue;
-        if (!above[i].empty()) {
-          ++column.changes;
-          column.constant = false;
-        }
+        const std::string_view cell = fields[i];
+        if (&slot == &slots_.front()) column.header = cell;
+        if (is_empty(cell) || cell == above[i]) continue;
+        if (!above[i].empty()) ++column.changes;
         above[i] = cell;
         if (column.values.size() < kMostValues && std::ranges::find(column.values, cell) == column.values.end())
           column.values.emplace_back(cell);
@@ -232,47 +266,48 @@ class Importer {
         column.is_clock = column.is_clock && is_of_a_clock(cell);
         column.is_whole = column.is_whole && cell.find_first_not_of("-+0123456789") == std::string_view::npos;
       }
-      first = false;
     }
-    for (ForeignColumn& column : columns_)
+    for (std::size_t i = 0; i < columns_.size(); ++i) {
+      ForeignColumn& column = columns_[i];
+      column.constant = column.changes == 0;
       if (column.values.empty()) column.is_units = column.is_clock = column.is_whole = false;
-  }
-
-  Fields cells_of(std::size_t number) const {
-    Fields cells, fields;
-    for (std::size_t line = block_.begin; line < block_.end; ++line) {
-      if (!is_row(layout_, lines_[line], fields)) continue;
-      cells.push_back(number <= fields.size() ? fields[number - 1] : std::string_view());
+      if (layout_.names.empty()) continue;
+      column.header = layout_.names[i];
+      column.parts = header_parts(column.header);
+      if (i >= layout_.units.size()) continue;
+      const std::string_view text = layout_.units[i];
+      const auto unit = find_unit(text), stated = column.parts.unit;
+      if (unit && stated && unit->to_si != stated->to_si) column.other_unit = text;
+      if (unit && !stated) column.parts.unit = unit;
+      if (!unit && !stated && text.find_first_not_of("-[]() ") != std::string_view::npos)
+        column.parts.foreign_unit = text;
     }
-    return cells;
   }
 
-  // A column that counts the parts of the seconds of the column before it.
-  std::size_t find_fractions() {
+  // A column that counts the parts of the seconds of the column before it; 0: none.
+  std::size_t find_fractions() const {
     for (std::size_t i = 1; i < columns_.size(); ++i) {
       const double unit_s = fraction_unit_s(columns_[i]);
       const ForeignColumn& main = columns_[i - 1];
-      const auto& main_unit = main.parts.unit;
-      const bool seconds = main.is_clock || (main.is_whole && main_unit && main_unit->quantity == Quantity::time &&
-                                             main_unit->to_si == 1.0);
+      const bool seconds = main.is_clock || (main.is_whole && main.parts.unit && main.parts.unit->name == "s");
       if (unit_s == 0.0 || !columns_[i].is_whole || !seconds) continue;
-      const Fields cells = cells_of(i + 1), whole = cells_of(i);
-      RowTimes times;
-      if (!times.examine(whole, layout_.decimal) || !times.are_whole_seconds()) continue;
-      double last = 0.0, value = 0.0;
-      bool below_1s = true, falls = main.changes == 0;
-      for (const std::string_view cell : cells) {
-        if (!parse_table_number(cell, layout_.decimal, value)) continue;
-        below_1s = below_1s && value >= 0.0 && value * unit_s < 1.0;
+      const auto times = read_times(cells_of(i), layout_.decimal);
+      bool fraction = times && times->whole, falls = main.constant;
+      double last = 0.0;
+      for (const double value : numbers_of(i + 1)) {
+        if (!std::isfinite(value)) continue;
+        fraction = fraction && value >= 0.0 && value * unit_s < 1.0;
         falls = falls || value < last;
         last = value;
       }
-      if (below_1s && falls) return i + 1;
+      if (fraction && falls) return i + 1;
     }
     return 0;
   }
 
   Status choose_roles() {
+    list_rows();
+    if (slots_.empty()) return fail("found no row of " + count_of(layout_.fields, "field") + " in these lines");
     measure_columns();
     fraction_ = find_fractions();
     std::vector<ForeignColumn> choices = columns_;
@@ -286,7 +321,8 @@ class Importer {
       const bool no_time = choice.problem.ends_with("the time") || !has_header;
       if (choice.number[1] == 0 || choice.number[2] == 0 || choice.times.size() < 2 || !wanted[0].empty())
         return fail(choice.problem + ", expected one column for each of time, position and force" +
-                        (no_time ? ", or --rate HZ if the rows are evenly spaced" : "") + the_columns(),
+                        (no_time ? ", or --rate HZ if the rows are evenly spaced" : "") + "; the columns are " +
+                        list_columns(columns_),
                     choice.readings);
     }
     number_ = choice.number;
@@ -326,28 +362,15 @@ class Importer {
     return {};
   }
 
-  Error refuse_sequence(std::size_t number) {
-    std::vector<Reading> parts;
-    std::string value;
-    LineRange part;
-    for (std::size_t line = block_.begin; line < block_.end; ++line) {
-      if (!is_row(layout_, lines_[line], fields_) || is_empty(number)) continue;
-      if (part.first > 0 && field(number) != value) {
-        parts.push_back(reading_of(part, value));
-        part.first = 0;
-      }
-      value = field(number);
-      part = {part.first > 0 ? part.first : line + 1, line + 1};
-    }
-    parts.push_back(reading_of(part, value));
-    parts.push_back(reading_of({block_.begin + 1, block_.end}, "all as one recording"));
+  Error refuse_sequence(std::size_t number) const {
+    const Fields cells = cells_of(number);
+    std::vector<Reading> parts = parts_of([&](std::size_t last, std::size_t i) { return cells[i] != cells[last]; },
+                                          [&](std::size_t i) { return !is_empty(cells[i]); },
+                                          [&](std::size_t i) { return std::string(cells[i]); });
+    parts.push_back(lines_reading({block_.begin + 1, block_.end}, "all as one recording"));
     return fail("found rows of " + std::to_string(parts.size() - 1) + " series, by column " + std::to_string(number) +
                     quoted_name(number) + ", expected one; choose the rows",
                 parts);
-  }
-
-  static Reading reading_of(const LineRange& part, const std::string& meaning) {
-    return {"--rows " + std::to_string(part.first) + "-" + std::to_string(part.last), meaning};
   }
 
   // The unit of each role, from the user, the header, or the rows.
@@ -441,15 +464,22 @@ class Importer {
   }
 
   Status find_time_unit() {
-    const Status understood = times_.examine(cells_of(number_[0]), layout_.decimal);
-    if (!understood) return fail_at(block_.begin + 1, understood.error().message);
-    if (fraction_ > 0 && number_[0] + 1 == fraction_) {
-      times_.add_fractions(fraction_unit_s(columns_[fraction_ - 1]));
-      use_unit(0, times_.are_of_a_clock() ? "clock" : "s", 1.0);
-      return {};
+    auto times = read_times(cells_of(number_[0]), layout_.decimal);
+    if (!times) return fail_at(block_.begin + 1, times.error().message);
+    times_ = std::move(*times);
+    const bool fractions = fraction_ > 0 && number_[0] + 1 == fraction_;
+    if (fractions) {
+      const double unit_s = fraction_unit_s(columns_[fraction_ - 1]);
+      double first = std::nan("");
+      const std::vector<double> parts = numbers_of(fraction_);
+      for (std::size_t i = 0; i < parts.size(); ++i) {
+        if (std::isnan(first) && std::isfinite(times_.since_first[i])) first = parts[i];
+        times_.since_first[i] += unit_s * (parts[i] - first);
+      }
+      times_.measure_steps();
     }
-    if (times_.are_of_a_clock()) {
-      use_unit(0, "clock", 1.0);
+    if (fractions || times_.of_a_clock) {
+      use_unit(0, times_.of_a_clock ? "clock" : "s", 1.0);
       return {};
     }
     const auto& parts = columns_[number_[0] - 1].parts;
@@ -457,16 +487,16 @@ class Importer {
       return find_unit_of(0);
     // Every unit in which the rate of the rows is possible, and that of a date, if the first time is one in one unit.
     std::vector<Reading> possible, dated;
-    const double step = times_.median_step();
+    const double step = times_.median_step;
     for (const char* name : {"ns", "ticks", "us", "ms", "s", "min", "h", "days"}) {
       const double to_s = find_unit(name)->to_si, rate_Hz = 1.0 / (step * to_s);
       if (!(step > 0.0) || !rate_in_range(step * to_s)) continue;
       const bool common = std::string_view("ns us ms s").find(name) != std::string_view::npos;
       // The rate of a rare unit is a set one, unless the times are rounded or jitter.
-      const bool steady = std::abs(times_.mean_step() / step - 1.0) < 1e-3;
+      const bool steady = std::abs(times_.mean_step / step - 1.0) < 1e-3;
       if (!common && steady && !is_round(rate_Hz)) continue;
       possible.push_back({std::string("--units ") + name, short_number(rate_Hz) + " Hz"});
-      if (is_date(name, times_.first_cell() * to_s)) dated.push_back(possible.back());
+      if (is_date(name, times_.first_cell * to_s)) dated.push_back(possible.back());
     }
     if (dated.size() == 1) possible = dated;
     const std::string steps = " and steps of " + short_number(step);
@@ -498,179 +528,119 @@ class Importer {
         epochs_s, [&](double epoch_s) { return time_s - epoch_s > 946684800.0 && time_s - epoch_s < 4102444800.0; });
   }
 
-  // The value of a role in the present row, in SI; none if it cannot be read.
-  std::optional<double> value_of(std::size_t role) const {
-    const auto cell = parse_table_cell(field(number_[role]), layout_.decimal);
-    if (!cell) return std::nullopt;
-    std::optional<Unit> unit = cell->unit;
-    if (unit_column_[role] > 0) unit = find_unit(field(unit_column_[role]));
-    if (unit && unit->quantity != static_cast<Quantity>(role)) return std::nullopt;
-    const double to_si = unit ? unit->to_si : to_si_[role];
-    return to_si != 0.0 ? std::optional(to_si * cell->value) : std::nullopt;
+  // The values of a role in SI; NaN where a cell cannot be read.
+  std::vector<double> values_of(std::size_t role, const Fields& cells) const {
+    const Fields units = unit_column_[role] > 0 ? cells_of(unit_column_[role]) : Fields();
+    std::vector<double> values(cells.size(), std::nan(""));
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+      const auto cell = parse_table_cell(cells[i], layout_.decimal);
+      if (!cell) continue;
+      const std::optional<Unit> unit = units.empty() ? cell->unit : find_unit(units[i]);
+      const double to_si = unit ? unit->to_si : to_si_[role];
+      if (to_si != 0.0 && (!unit || unit->quantity == static_cast<Quantity>(role))) values[i] = to_si * cell->value;
+    }
+    return values;
   }
 
-  // Reads every line of the block. Lines that cannot be read keep their place in time.
+  // Reads every row. Rows that cannot be read keep their place in time.
   Status read_rows() {
-    std::array<std::uint64_t, kRoles> missing{};
-    std::uint64_t bad = 0;
-    std::optional<Error> fault;
-    // Without a clock every line is a row in time, also an empty one, unless each row has an empty line after it.
-    const bool no_clock = number_[0] == 0 || request_.rate_Hz;
-    const auto empty = std::count_if(lines_.begin() + static_cast<std::ptrdiff_t>(block_.begin),
-                                     lines_.begin() + static_cast<std::ptrdiff_t>(block_.end),
-                                     [](std::string_view line) { return trimmed(line).empty(); });
-    const bool empty_counts = no_clock && static_cast<std::size_t>(empty) + 1 < block_.rows;
-    for (std::size_t i = block_.begin; i < block_.end; ++i) {
-      const std::string_view line = lines_[i];
-      if (trimmed(line).empty() && !empty_counts) continue;
-      if (line.starts_with('#')) {
-        leave_out("comments", i + 1);
-        continue;
-      }
-      const bool in_time = is_row(layout_, line, fields_);
-      Row row{{}, i + 1};
-      const auto position_m = value_of(1), force_N = value_of(2);
-      row.row.position_m = position_m.value_or(0.0);
-      row.row.force_N = force_N.value_or(0.0);
-      if (number_[0] > 0) {
-        const auto time = times_.since_first(field(number_[0]), field(fraction_));
-        if (time) row.own_s = to_si_[0] * *time;
-      }
-      for (const auto& [number, column] : {std::pair{velocity_, &RecordingRow::velocity_m_per_s},
-                                           std::pair{acceleration_, &RecordingRow::acceleration_m_per_s2}})
-        if (number > 0 && !parse_table_number(field(number), layout_.decimal, row.row.*column)) gaps_ = true;
-      const bool needs_time = number_[0] > 0 && !request_.rate_Hz;
-      row.good = in_time && position_m && force_N && (row.own_s || !needs_time);
-      if (!row.good) {
-        for (const std::size_t role : {1u, 2u})
-          if (in_time && is_empty(number_[role])) ++missing[role];
-        leave_out(in_time ? "unreadable" : "text between the rows", i + 1);
-        if (bad++ == 0) fault = unreadable(i + 1, line, !position_m ? number_[1] : !force_N ? number_[2] : number_[0]);
-      }
-      if (in_time || row.good || no_clock) rows_.push_back(row);
+    for (const double time : times_.since_first) own_s_.push_back(to_si_[0] * time);
+    if (number_[0] == 0) own_s_.assign(slots_.size(), std::nan(""));
+    std::array<Fields, kRoles> cells;
+    for (const std::size_t role : {1u, 2u}) values_[role] = values_of(role, cells[role] = cells_of(number_[role]));
+    const bool two_clocks = has_two_clocks();  // one channel may have fewer values than the other
+    std::uint64_t unreadable = 0;
+    std::size_t first_bad = texts_ > 0 ? first_text_ : lines_.size() + 1;
+    std::string fault = "found \"" + printable(texts_ > 0 ? lines_[first_text_ - 1] : "") + "\", expected a row of " +
+                        count_of(layout_.fields, "field");
+    for (std::size_t i = 0; i < slots_.size(); ++i) {
+      Slot& slot = slots_[i];
+      const std::array finite{no_clock_ || std::isfinite(own_s_[i]), std::isfinite(values_[1][i]),
+                              std::isfinite(values_[2][i])};
+      slot.good = slot.is_row && finite[0] && finite[1] && finite[2];
+      if (slot.good || !slot.is_row || two_clocks) continue;
+      ++unreadable;
+      leave_out("unreadable", slot.line);
+      if (slot.line > first_bad) continue;
+      first_bad = slot.line;
+      const std::size_t role = !finite[1] ? 1 : !finite[2] ? 2 : 0;
+      const std::string_view cell = role > 0 ? cells[role][i] : cells_of(number_[0])[i];
+      fault = "found " + (cell.empty() ? "an empty field" : '"' + printable(cell) + '"') + " in column " +
+              std::to_string(number_[role]) + quoted_name(number_[role]) +
+              ", expected a number; repair the value, or leave the row out";
     }
-    for (std::size_t i = block_.end; i < lines_.size() && !is_row(layout_, lines_[i], fields_); ++i)
-      if (!trimmed(lines_[i]).empty() && layout_.blocks.size() == 1) leave_out("text after the table", i + 1);
-    const auto good = static_cast<std::uint64_t>(std::ranges::count(rows_, true, &Row::good));
-    const std::uint64_t most = std::max(missing[1], missing[2]);
-    const bool slow = most >= kSlowRows && 2 * most >= bad;
-    const std::string full = std::to_string(good) + " full rows";
-    if (slow && (bad > request_.skip_bad_rows || good == 0)) {
-      if (has_two_clocks()) return {};
-      const std::size_t role = missing[1] > missing[2] ? 1 : 2;
-      return fail("found no value of the " + std::string(kRoleNames[role]) + " in column " +
-                      std::to_string(number_[role]) + quoted_name(number_[role]) + " in " +
-                      std::to_string(missing[role]) + " of " + std::to_string(good + bad) + " rows, expected one in " +
-                      "every row; " +
-                      (good == 0 ? "no row has both position and force: resample both to common times"
-                                 : "use only the " + full + ", or fill the empty fields by interpolation"),
-                  good == 0 ? std::vector<Reading>{}
-                            : std::vector<Reading>{{"--skip-bad-rows " + std::to_string(bad), "the " + full}});
-    }
-    if (bad > request_.skip_bad_rows && !has_two_clocks())
-      return refusal(path_, request_, fault->message,
-                     {{"--skip-bad-rows " + std::to_string(bad),
-                       "without " + count_of(bad, "such row") + "; the other rows keep their times"}});
-    return {};
-  }
-
-  Error unreadable(std::uint64_t line, std::string_view text, std::size_t number) const {
-    const std::string_view cell = field(number);
-    const std::string found = cell.empty() ? "an empty field" : '"' + printable(cell) + '"';
-    if (!is_row(layout_, text, const_cast<Fields&>(fields_)))
-      return Error{":" + std::to_string(line) + ": found \"" + printable(text) + "\", expected a row of " +
-                   count_of(layout_.fields, "field")};
-    return Error{":" + std::to_string(line) + ": found " + found + " in column " + std::to_string(number) +
-                 quoted_name(number) + ", expected a number; repair the value, or leave the row out"};
+    const std::uint64_t bad = texts_ + unreadable;
+    if (std::ranges::none_of(slots_, &Slot::good) && !two_clocks)
+      return fail_at(first_bad, fault + "; no row has both position and force");
+    if (bad <= request_.skip_bad_rows) return {};
+    return fail_at(first_bad, fault,
+                   {{"--skip-bad-rows " + std::to_string(bad),
+                     "without " + count_of(bad, "such row") + "; the other rows keep their times"}});
   }
 
   // Refuses times that go back, and clocks that contradict each other.
   Status check_times() {
-    if (times_.midnights() > 0) note("the clock passes midnight: a day is added from there");
-    std::vector<Reading> parts;
-    LineRange part;
+    if (times_.midnights > 0) note("the clock passes midnight: a day is added from there");
     double last_s = 0.0, most_s = 0.0;
-    std::uint64_t first_back = 0;
-    const double step_s = to_si_[0] * times_.median_step();
-    for (const Row& row : rows_) {
-      if (!row.own_s) continue;
-      const double back_s = last_s - *row.own_s;
-      if (part.first > 0 && back_s > 0.0) {
-        if (first_back == 0) first_back = row.line;
-        most_s = std::max(most_s, back_s);
-        parts.push_back(reading_of(part, count_of(part.last - part.first + 1, "line")));
-        part.first = 0;
-      }
-      if (part.first == 0) part.first = row.line;
-      part.last = row.line;
-      last_s = *row.own_s;
+    std::size_t first_back = 0;
+    for (std::size_t i = 0; i < slots_.size(); ++i) {
+      if (!std::isfinite(own_s_[i])) continue;
+      if (own_s_[i] < last_s && first_back == 0) first_back = slots_[i].line;
+      most_s = std::max(most_s, last_s - own_s_[i]);
+      last_s = own_s_[i];
     }
+    const double step_s = to_si_[0] * times_.median_step;
     const bool restarts = most_s > kSwappedSteps * step_s;
-    if (first_back > 0 && (restarts || !request_.rate_Hz)) {
-      parts.push_back(reading_of(part, count_of(part.last - part.first + 1, "line")));
-      const bool many = parts.size() > kMostReadings;
-      if (many) parts.clear();
-      for (const std::size_t other : other_times_)
-        parts.insert(parts.begin(), {"--columns time=" + std::to_string(other),
-                                     "the times of \"" + printable(columns_[other - 1].header) + '"'});
-      const double rate_Hz = static_cast<double>(rows_.size() - 1) / std::max(last_s, step_s);
-      if (!restarts) parts.insert(parts.begin(), {"--rate " + short_number(rate_Hz), "if the rows are evenly spaced"});
-      return fail_at(first_back,
-                     "found a time " + short_number(most_s) + " s before that of the row above" +
-                         quoted_name(number_[0]) + ", expected later times in every row; " +
-                         (many ? "sort the rows, or split the file" : "choose the rows"),
-                     parts);
-    }
-    return has_two_clocks() ? Status() : compare_clocks();
+    if (first_back == 0 || (!restarts && request_.rate_Hz)) return has_two_clocks() ? Status() : compare_clocks();
+    std::vector<Reading> parts = parts_of([&](std::size_t last, std::size_t i) { return own_s_[i] < own_s_[last]; },
+                                          [&](std::size_t i) { return std::isfinite(own_s_[i]); },
+                                          [](std::size_t) { return std::string("times that do not go back"); });
+    const bool many = parts.size() > kMostReadings;
+    if (many) parts.clear();
+    for (const std::size_t other : other_times_)
+      parts.insert(parts.begin(), {"--columns time=" + std::to_string(other),
+                                   "the times of \"" + printable(columns_[other - 1].header) + '"'});
+    const double rate_Hz = static_cast<double>(slots_.size() - 1) / std::max(last_s, step_s);
+    if (!restarts) parts.insert(parts.begin(), {"--rate " + short_number(rate_Hz), "if the rows are evenly spaced"});
+    return fail_at(first_back,
+                   "found a time " + short_number(most_s) + " s before that of the row above" +
+                       quoted_name(number_[0]) + ", expected later times in every row; " +
+                       (many ? "sort the rows, or split the file" : "choose the rows"),
+                   parts);
   }
 
-  // The times of another column, in seconds since its first one, which is put into `first_s`; empty without a known
-  // unit.
-  std::vector<double> times_of(std::size_t number, bool& whole, double& first_s) const {
-    const Fields cells = cells_of(number);
-    RowTimes times;
-    if (!times.examine(cells, layout_.decimal)) return {};
+  // The times of another column in s; empty if it has none.
+  ColumnTimes clock_in_s(std::size_t number) const {
+    auto times = read_times(cells_of(number), layout_.decimal);
+    if (!times) return {};
     const auto& unit = columns_[number - 1].parts.unit;
-    const double to_s = times.are_of_a_clock()                     ? 1.0
-                        : unit && unit->quantity == Quantity::time ? unit->to_si
-                                                                   : to_si_[0];
-    whole = times.are_of_a_clock() && times.are_whole_seconds();
-    first_s = to_s * times.first_cell();
-    std::vector<double> seconds;
-    for (const std::string_view cell : cells) {
-      const auto time = times.since_first(cell);
-      seconds.push_back(time ? to_s * *time : std::nan(""));
-    }
-    return seconds;
+    const bool stated = unit && unit->quantity == Quantity::time;
+    const double to_s = times->of_a_clock ? 1.0 : stated ? unit->to_si : to_si_[0];
+    times->first_cell *= to_s;
+    for (double& time : times->since_first) time *= to_s;
+    return std::move(*times);
   }
 
   Status compare_clocks() {
-    if (number_[0] == 0 || rows_.empty() || !rows_.front().own_s || !rows_.back().own_s) return {};
-    std::vector<std::size_t> others = other_times_;
-    for (std::size_t i = 0; i < columns_.size(); ++i)
-      if (columns_[i].is_clock && i + 1 != number_[0] && std::ranges::find(others, i + 1) == others.end() &&
-          columns_[i].values.front().find(':') != std::string::npos)
-        others.push_back(i + 1);
-    const double step_s = to_si_[0] * times_.median_step();
-    for (const std::size_t other : others) {
-      bool whole = false;
-      double first_s = 0.0;
-      const std::vector<double> seconds = times_of(other, whole, first_s);
-      if (seconds.size() != rows_.size()) continue;
+    if (number_[0] == 0 || slots_.empty() || !std::isfinite(own_s_.front()) || !std::isfinite(own_s_.back())) return {};
+    if (!request_.columns[0].empty()) return {};
+    for (const std::size_t other : other_times_) {
+      const ColumnTimes clock = clock_in_s(other);
+      const std::vector<double>& seconds = clock.since_first;
+      if (seconds.empty()) continue;
       // A clock with hours and minutes may be that of the arrival; its duration must be that of the times.
-      const bool rival = !columns_[other - 1].is_clock || times_.are_of_a_clock();
+      const bool rival = !columns_[other - 1].is_clock || times_.of_a_clock;
       double apart_s = 0.0;
-      for (std::size_t i = 0; i < rows_.size(); ++i)
-        if (rows_[i].own_s && std::isfinite(seconds[i]))
-          apart_s = std::max(apart_s, std::abs(*rows_[i].own_s - seconds[i]));
+      for (std::size_t i = 0; i < slots_.size(); ++i)
+        if (std::isfinite(own_s_[i] - seconds[i])) apart_s = std::max(apart_s, std::abs(own_s_[i] - seconds[i]));
       const double limit_s =
-          std::max(rival ? 0.5 * step_s : kDuration_s, kDurationShare * (rival ? 0.0 : *rows_.back().own_s));
-      if (apart_s <= limit_s + (whole ? 1.0 : 0.0) || has_given_time()) continue;
+          rival ? 0.5 * to_si_[0] * times_.median_step : std::max(kDuration_s, kDurationShare * own_s_.back());
+      if (apart_s <= limit_s + (clock.of_a_clock && clock.whole ? 1.0 : 0.0)) continue;
       std::vector<Reading> readings;
       for (const std::size_t number : {number_[0], other})
         readings.push_back({"--columns time=" + std::to_string(number),
                             '"' + printable(columns_[number - 1].header) +
-                                "\": " + short_number(number == other ? seconds.back() : *rows_.back().own_s) + " s"});
+                                "\": " + short_number(number == other ? seconds.back() : own_s_.back()) + " s"});
       return fail("found two clocks that differ by up to " + short_number(apart_s) + " s, in columns " +
                       std::to_string(number_[0]) + quoted_name(number_[0]) + " and " + std::to_string(other) +
                       quoted_name(other) + ", expected one; choose the time",
@@ -678,200 +648,189 @@ class Importer {
     }
     return {};
   }
-  bool has_given_time() const { return !request_.columns[0].empty(); }
 
-  // Two clocks: intervals of LabVIEW that differ, or a column of times before each channel.
-  bool has_two_clocks() const {
-    if (request_.rate_Hz) return false;
-    const auto& steps = layout_.steps_s;
-    if (!steps.empty()) return lab(steps, 1) != lab(steps, 2) || lab(layout_.starts_s, 1) != lab(layout_.starts_s, 2);
-    const auto clocks = clock_columns();
-    if (clocks[1] == clocks[2]) return false;
-    return cells_of(clocks[1]) != cells_of(clocks[2]);
-  }
   double lab(const std::vector<double>& values, std::size_t role) const {
     return number_[role] <= values.size() ? values[number_[role] - 1] : 0.0;
   }
-  // The column of times that is the nearest before each channel.
+  // The column of times that is the nearest before the position and before the force.
   std::array<std::size_t, kRoles> clock_columns() const {
-    std::array<std::size_t, kRoles> clocks{number_[0], 0, 0};
+    std::array<std::size_t, kRoles> clocks{};
     std::vector<std::size_t> times = other_times_;
-    if (number_[0] > 0) times.push_back(number_[0]);
-    std::ranges::sort(times);
+    times.push_back(number_[0]);
     for (const std::size_t role : {1u, 2u})
       for (const std::size_t time : times)
-        if (time < number_[role]) clocks[role] = time;
+        if (time < number_[role]) clocks[role] = std::max(clocks[role], time);
     if (clocks[1] == 0 || clocks[2] == 0) clocks[1] = clocks[2] = number_[0];
     return clocks;
+  }
+  // Whether the intervals of LabVIEW or the columns of times before the two channels differ.
+  bool has_two_clocks() const {
+    if (request_.rate_Hz) return false;
+    const auto &steps = layout_.steps_s, &starts = layout_.starts_s;
+    if (!steps.empty()) return lab(steps, 1) != lab(steps, 2) || lab(starts, 1) != lab(starts, 2);
+    const auto clocks = clock_columns();
+    return clocks[1] != clocks[2] && cells_of(clocks[1]) != cells_of(clocks[2]);
   }
 
   // Two channels with clocks of their own, on the times of the faster one.
   Status resample() {
     std::array<Channel, kRoles> channels;
     const auto clocks = clock_columns();
+    const bool by_interval = !layout_.steps_s.empty();
     for (const std::size_t role : {1u, 2u}) {
-      bool whole = false;
-      double first_s = lab(layout_.starts_s, role);
-      std::vector<double> seconds;
-      if (layout_.steps_s.empty()) seconds = times_of(clocks[role], whole, first_s);
+      const ColumnTimes clock = by_interval ? ColumnTimes() : clock_in_s(clocks[role]);
+      const double first_s = by_interval ? lab(layout_.starts_s, role) : clock.first_cell;
       Channel& channel = channels[role];
-      std::size_t place = 0;
-      for (std::size_t line = block_.begin; line < block_.end; ++line) {
-        if (!is_row(layout_, lines_[line], fields_)) continue;
-        const double since_s =
-            layout_.steps_s.empty() ? seconds[place] : static_cast<double>(place) * lab(layout_.steps_s, role);
-        ++place;
-        const auto value = value_of(role);
-        if (!value || !std::isfinite(since_s)) continue;
-        if (!channel.times_s.empty() && !(first_s + since_s > channel.times_s.back()))
-          return fail_at(line + 1, "found a time of the " + std::string(kRoleNames[role]) +
-                                       " that is not later than that above, expected later times in every row");
-        channel.times_s.push_back(first_s + since_s);
-        channel.values.push_back(*value);
-        channel.lines.push_back(line + 1);
+      for (std::size_t i = 0; i < slots_.size(); ++i) {
+        const double time_s = first_s + (by_interval ? static_cast<double>(i) * lab(layout_.steps_s, role)
+                                         : clock.since_first.empty() ? std::nan("")
+                                                                     : clock.since_first[i]);
+        if (!std::isfinite(time_s + values_[role][i])) continue;
+        if (!channel.times_s.empty() && time_s <= channel.times_s.back())
+          return fail_at(slots_[i].line, "found a time of the " + std::string(kRoleNames[role]) +
+                                             " that is not later than that above, expected later times in every row");
+        channel.times_s.push_back(time_s);
+        channel.values.push_back(values_[role][i]);
+        channel.slots.push_back(i);
       }
       if (channel.values.size() < 2) return fail("found no values of the " + std::string(kRoleNames[role]));
     }
     const std::size_t slow = channels[1].step_s() >= channels[2].step_s() ? 1 : 2, fast = 3 - slow;
-    const std::string slow_name = kRoleNames[slow], fast_name = kRoleNames[fast];
     const double begin_s = std::min(channels[1].times_s.front(), channels[2].times_s.front());
-    const auto words = [&](std::size_t role) {
-      return std::string(kRoleNames[role]) + " every " + short_number(channels[role].step_s()) + " s from " +
-             short_number(channels[role].times_s.front() - begin_s) + " s on";
-    };
-    const std::string found = "found two clocks, with a " + words(1) + " and a " + words(2);
-    std::vector<RecordingRow>& rows = table_.recording.rows;
-    table_.left_out.clear();
+    std::string found = "found two clocks, with";
+    for (const std::size_t role : {1u, 2u})
+      found += std::string(role == 1 ? " a " : " and a ") + kRoleNames[role] + " every " +
+               short_number(channels[role].step_s()) + " s from " +
+               short_number(channels[role].times_s.front() - begin_s) + " s on";
+    const Channel &own = channels[fast], &other = channels[slow];
     std::size_t after = 1;
     double error = 0.0;
-    const Channel &own = channels[fast], &other = channels[slow];
     for (std::size_t i = 0; i < own.values.size(); ++i) {
       const double time_s = own.times_s[i];
       if (time_s < other.times_s.front() - 1e-9 || time_s > other.times_s.back() + 1e-9) {
-        leave_out(slow == 1 ? "without a position at the time" : "without a force at the time", own.lines[i]);
+        leave_out(slow == 1 ? "without a position at the time" : "without a force at the time",
+                  slots_[own.slots[i]].line);
         continue;
       }
       const double between = other.at(time_s, after, error);
-      rows.push_back({time_s - begin_s, slow == 1 ? between : own.values[i], slow == 1 ? own.values[i] : between});
+      table_.recording.rows.push_back(
+          {time_s - begin_s, slow == 1 ? between : own.values[i], slow == 1 ? own.values[i] : between});
     }
     const auto [low, high] = std::ranges::minmax(other.values);
+    const std::string slow_name = kRoleNames[slow];
     if (error > kInterpolationShare * (high - low))
       return fail(found + ", expected one, or a " + slow_name +
                   " that is fast enough to be interpolated; export both channels with one interval");
-    note("warning: " + found + ": the " + slow_name + " is interpolated at the times of the " + fast_name);
-    table_.columns[0] = {clocks[fast],
-                         layout_.names.empty() || clocks[fast] == 0 ? "" : columns_[clocks[fast] - 1].header,
-                         std::string(table_.columns[0].unit)};
+    note("warning: " + found + ": the " + slow_name + " is interpolated at the times of the " + kRoleNames[fast]);
+    table_.columns[0].number = clocks[fast];
+    if (clocks[fast] > 0 && !layout_.names.empty()) table_.columns[0].header = columns_[clocks[fast] - 1].header;
     return {};
   }
 
-  // The place of each row in time by a column that counts the rows and skips some; empty: there is none.
-  std::vector<double> counted_places() {
-    for (std::size_t i = 0; i < columns_.size(); ++i) {
+  // The place of each row in time: its number, or that of a column that counts the rows and skips some.
+  std::vector<double> places_of_rows() {
+    std::vector<double> places(slots_.size());
+    std::iota(places.begin(), places.end(), 0.0);
+    for (std::size_t i = 0; i < columns_.size() && slots_.size() > kCountedRows; ++i) {
       const ForeignColumn& column = columns_[i];
-      if (!column.is_whole || column.changes + 1 < rows_.size() || std::ranges::count(number_, i + 1) > 0) continue;
-      std::vector<double> places, steps;
-      double value = 0.0;
-      for (const std::string_view cell : cells_of(i + 1))
-        if (parse_table_number(cell, layout_.decimal, value)) places.push_back(value);
-      for (std::size_t k = 1; k < places.size(); ++k) steps.push_back(places[k] - places[k - 1]);
-      if (places.size() != rows_.size() || steps.size() < kSlowRows) continue;
-      const double step = nth_smallest(steps, steps.size() / 2), first = places.front();
-      double gaps = 0.0;
-      const bool counts = step > 0.0 && std::ranges::all_of(steps, [&](double one) {
-                            gaps += one / step - 1.0;
-                            return one >= step && std::fmod(one, step) == 0.0;
-                          });
-      if (!counts || gaps == 0.0) continue;
-      for (double& place : places) place = (place - first) / step;
+      if (!column.is_whole || column.changes + 1 < slots_.size() || std::ranges::count(number_, i + 1) > 0) continue;
+      std::vector<double> counts = numbers_of(i + 1), steps;
+      for (std::size_t k = 1; k < counts.size(); ++k) steps.push_back(counts[k] - counts[k - 1]);
+      const double step = median_of(steps), first = counts.front();
+      const bool multiples = step > 0.0 && std::ranges::all_of(steps, [&](double one) {
+                               return one >= step && std::fmod(one, step) == 0.0;
+                             });
+      for (double& count : counts) count = (count - first) / step;
+      const double gaps = counts.back() - places.back();
+      if (!multiples || gaps == 0.0) continue;
       note("warning: column " + std::to_string(i + 1) + quoted_name(i + 1) + " counts the rows and skips " +
            short_number(gaps) + " of them: the others keep their times");
-      return places;
+      return counts;
     }
-    return {};
+    return places;
+  }
+
+  // Refuses a clock that is so coarse that most rows have the time of the row above.
+  Status refuse_coarse_clock() const {
+    std::vector<std::size_t> changes;  // slots
+    std::size_t shared = 0;
+    bool copies = true;
+    for (std::size_t i = 1; i < slots_.size(); ++i) {
+      if (own_s_[i] > own_s_[i - 1]) changes.push_back(i);
+      if (own_s_[i] != own_s_[i - 1]) continue;
+      ++shared;
+      copies = copies && values_[1][i] == values_[1][i - 1] && values_[2][i] == values_[2][i - 1];
+    }
+    if (copies || 2 * shared <= slots_.size()) return {};
+    std::vector<Reading> readings;
+    if (changes.size() > 1) {
+      // The rows between two changes of the time are known to one row.
+      const auto between = static_cast<double>(changes.back() - changes.front());
+      double rate_Hz = between / (own_s_[changes.back()] - own_s_[changes.front()]);
+      if (std::abs(std::round(rate_Hz) - rate_Hz) * between <= 2.0 * rate_Hz) rate_Hz = std::round(rate_Hz);
+      readings.push_back({"--rate " + short_number(rate_Hz), "the mean rate"});
+    }
+    return fail("found the time of the row above" + quoted_name(number_[0]) + " in " + std::to_string(shared) + " of " +
+                    std::to_string(slots_.size()) +
+                    " rows, expected a later time in every row; write the times with more digits, or, if the rows are "
+                    "evenly spaced, add --rate HZ",
+                readings);
   }
 
   // Gives every row its time.
   Status set_times() {
-    table_.lines = {rows_.front().line, rows_.back().line};
+    table_.lines = {slots_.front().line, slots_.back().line};
     if (has_two_clocks()) return resample();
     double rate_Hz = request_.rate_Hz.value_or(0.0);
-    if (rate_Hz == 0.0 && !layout_.steps_s.empty() && lab(layout_.steps_s, 1) > 0.0) {
+    if (rate_Hz > 0.0) {
+      note("the rows are evenly spaced at the --rate of " + short_number(rate_Hz) + " Hz");
+    } else if (!layout_.steps_s.empty() && lab(layout_.steps_s, 1) > 0.0) {
       rate_Hz = 1.0 / lab(layout_.steps_s, 1);
       number_[0] = 0;
       note("the rows are evenly spaced by the Delta_X above the table");
-    } else if (rate_Hz > 0.0) {
-      note("the rows are evenly spaced at the --rate of " + short_number(rate_Hz) + " Hz");
+    } else if (const Status fine = refuse_coarse_clock(); !fine) {
+      return fine;
     }
-    const double own_s = rows_.back().own_s.value_or(0.0);
-    const bool copies_left = rate_Hz == 0.0;
-    if (copies_left) {
-      // Rows that share a time are evenly spaced if the clock is coarse.
-      std::vector<RecordingRow> all;
-      for (const Row& row : rows_) {
-        all.push_back(row.row);
-        all.back().time_s = row.own_s.value_or(all.size() > 1 ? all[all.size() - 2].time_s : 0.0);
-      }
-      const RepeatedTimes repeated = find_repeated_times(all);
-      const std::string shared = std::to_string(repeated.rows) + " of " + std::to_string(rows_.size()) + " rows";
-      if (repeated.rate_Hz && !repeated.copies) {
-        rate_Hz = *repeated.rate_Hz;
-        note("warning: the clock" + quoted_name(number_[0]) + " has steps of " + short_number(repeated.step_s) +
-             " s, and " + shared +
-             " have the time of the row above: the rows are taken as evenly spaced, as with --rate " +
-             short_number(rate_Hz));
-      } else if (!repeated.copies && 2 * repeated.rows > all.size()) {
-        const std::string rate = short_number(repeated.mean_rate_Hz);
-        return fail("found the time of the row above" + quoted_name(number_[0]) + " in " + shared +
-                        ", expected a later time in every row; write the times with more digits, or, if the rows are "
-                        "evenly spaced, add --rate HZ",
-                    repeated.mean_rate_Hz > 0.0 ? std::vector<Reading>{{"--rate " + rate, "the mean rate"}}
-                                                : std::vector<Reading>{});
-      }
-    }
-    auto& rows = table_.recording.rows;
-    const std::vector<double> places = !copies_left ? counted_places() : std::vector<double>{};
-    for (std::size_t place = 0; place < rows_.size(); ++place) {
-      RecordingRow row = rows_[place].row;
-      const double at = places.empty() ? static_cast<double>(place) : places[place];
-      row.time_s = rate_Hz > 0.0 ? at / rate_Hz : rows_[place].own_s.value_or(0.0);
-      if (!rows_[place].good) continue;
-      if (!rows.empty() && row.time_s == rows.back().time_s) {
-        leave_out("with the time of the row above", rows_[place].line);
+    const std::vector<double> places = rate_Hz > 0.0 ? places_of_rows() : std::vector<double>();
+    const std::vector<double> velocities = numbers_of(velocity_), accelerations = numbers_of(acceleration_);
+    auto& recording = table_.recording;
+    recording.columns = {velocity_ > 0, acceleration_ > 0};
+    for (std::size_t i = 0; i < slots_.size(); ++i) {
+      if (velocity_ > 0 && std::isnan(velocities[i])) recording.columns = {};
+      if (acceleration_ > 0 && std::isnan(accelerations[i])) recording.columns = {};
+      if (!slots_[i].good) continue;
+      const double time_s = rate_Hz > 0.0 ? places[i] / rate_Hz : own_s_[i];
+      if (!recording.rows.empty() && time_s == recording.rows.back().time_s) {
+        leave_out("with the time of the row above", slots_[i].line);
         continue;
       }
-      rows.push_back(row);
+      recording.rows.push_back({time_s, values_[1][i], values_[2][i], velocities[i], accelerations[i]});
     }
-    if (rows.empty()) return {};
-    const double seconds = rows.back().time_s;
-    if (request_.rate_Hz && number_[0] > 0 && std::abs(seconds - own_s) > kDurationShare * own_s && own_s > 0.0)
+    const double seconds = recording.rows.back().time_s, own_s = own_s_.back();
+    if (request_.rate_Hz && own_s > 0.0 && std::abs(seconds - own_s) > kDurationShare * own_s)
       note("warning: with --rate " + short_number(rate_Hz) + " the recording is " + short_number(seconds) +
            " s long, but " + short_number(own_s) + " s by the times in the file");
-    if (rate_Hz == 0.0 && times_.are_of_a_clock())
-      note(times_.have_dates() ? "the times are dates: time_s is 0 at the first row"
-                               : "the times are times of day: time_s is 0 at the first row");
+    if (rate_Hz == 0.0 && times_.of_a_clock)
+      note(times_.with_dates ? "the times are dates: time_s is 0 at the first row"
+                             : "the times are times of day: time_s is 0 at the first row");
     return {};
   }
 
   // Applies the signs, and checks what does not depend on a moved zero.
   Status finish() {
     auto& recording = table_.recording;
-    auto& rows = recording.rows;
-    for (RecordingRow& row : rows) {
-      if (request_.flip_position) {
-        row.position_m = -row.position_m;
-        row.velocity_m_per_s = -row.velocity_m_per_s;
-        row.acceleration_m_per_s2 = -row.acceleration_m_per_s2;
-      }
-      if (request_.flip_force) row.force_N = -row.force_N;
-    }
     RowRules rules;
-    for (const RecordingRow& row : rows)
+    for (RecordingRow& row : recording.rows) {
+      if (request_.flip_position) row.position_m = -row.position_m;
+      if (request_.flip_force) row.force_N = -row.force_N;
+      const bool with_velocity = recording.columns.velocity, with_acceleration = recording.columns.acceleration;
+      const double sign = request_.flip_position ? -1.0 : 1.0;
+      row.velocity_m_per_s = with_velocity ? sign * row.velocity_m_per_s : 0.0;
+      row.acceleration_m_per_s2 = with_acceleration ? sign * row.acceleration_m_per_s2 : 0.0;
       if (const auto fault = rules.check({row.time_s, 0.0, 0.0})) return fail_at(table_.lines.first, fault->text);
+    }
     if (const auto fault = rules.finish()) return fail(fault->text);
-    recording.columns = {velocity_ > 0 && !gaps_, acceleration_ > 0 && !gaps_};
-    const auto used = [&](std::size_t role) { return number_[role] > 0; };
-    if (!used(0) || request_.rate_Hz) table_.columns[0] = {};
+    if (number_[0] == 0 || request_.rate_Hz) table_.columns[0] = {};
     table_.delimiter = layout_.delimiter.name;
     table_.decimal = layout_.decimal == ',' ? "comma" : "point";
     table_.header_line = layout_.header;
@@ -887,16 +846,18 @@ class Importer {
   ImportedTable table_;
   TableLayout layout_;
   RowBlock block_;
-  std::size_t end_of_block_ = 0;
+  bool no_clock_ = false;  // the rows are evenly spaced
+  std::vector<Slot> slots_;
+  std::uint64_t texts_ = 0;     // lines of text between the rows
+  std::size_t first_text_ = 0;  // the first of them, from 1
   std::vector<ForeignColumn> columns_;
   std::array<std::size_t, kRoles> number_{}, unit_column_{};  // from 1; 0: none
   std::array<double, kRoles> to_si_{};
   std::vector<std::size_t> other_times_;
   std::size_t fraction_ = 0, velocity_ = 0, acceleration_ = 0;
-  RowTimes times_;
-  Fields fields_;  // of the present row
-  bool gaps_ = false;
-  std::vector<Row> rows_;
+  ColumnTimes times_;
+  std::vector<double> own_s_;                       // the time of each slot in the file
+  std::array<std::vector<double>, kRoles> values_;  // of each slot in SI; NaN: none
 };
 
 }  // namespace

@@ -59,7 +59,7 @@ Marks read_as(const std::vector<std::string_view>& lines, const Delimiter& delim
     if (trimmed(lines[i]).empty()) continue;
     split_table_fields(lines[i], delimiter, fields);
     const FieldCount count = count_fields(fields, decimal);
-    if (!count.is_row() || count.numbers + count.missing < 2) {
+    if (!count.is_row()) {
       run = {delimiter, decimal};
       continue;
     }
@@ -73,31 +73,24 @@ Marks read_as(const std::vector<std::string_view>& lines, const Delimiter& delim
   return best;
 }
 
-// Whether a comma in the numbers can only be a decimal mark: not followed by exactly three digits, or after a single 0
-// or more than three digits.
-bool proves_decimal_comma(std::string_view field) {
-  const std::size_t comma = field.find(',');
-  if (comma == std::string_view::npos) return false;
-  std::string_view whole = field.substr(0, comma);
-  if (!whole.empty() && (whole.front() == '-' || whole.front() == '+')) whole.remove_prefix(1);
-  const std::size_t end = std::min(field.find_first_not_of("0123456789", comma + 1), field.size());
-  return end - comma - 1 != 3 || whole.empty() || whole.front() == '0' || whole.size() > 3;
-}
-
+// Refuses numbers whose comma may be a thousands mark in every cell: "1,234", but not "0,123" or "1,5".
 Status check_decimal_comma(const std::vector<std::string_view>& lines, const TableLayout& layout) {
   Fields fields;
-  std::string_view example;
+  std::string example;
   for (const std::string_view line : lines) {
     if (!is_row(layout, line, fields)) continue;
-    for (const std::string_view field : fields) {
+    for (std::string_view field : fields) {
       double value = 0.0;
       if (field.find(',') == std::string_view::npos || !parse_table_number(field, ',', value)) continue;
-      if (proves_decimal_comma(field)) return {};
+      if (field.front() == '-' || field.front() == '+') field.remove_prefix(1);
+      std::string plain(field);
+      std::erase(plain, ',');
+      if (field.front() == '0' || with_thousands(plain) != field) return {};
       example = field;
     }
   }
   if (example.empty()) return {};
-  return Error{"found numbers such as " + std::string(example) +
+  return Error{"found numbers such as " + example +
                ", whose comma may be a decimal mark or a thousands mark; add --decimal comma, or export the "
                "numbers without thousands marks"};
 }
@@ -120,123 +113,82 @@ void measure_rows(const std::vector<std::string_view>& lines, TableLayout& layou
     if (number >= kRowsOfAWidth) layout.widest = std::max(layout.widest, width);
 }
 
-enum class Kind { blank, text, row, other };  // other: numbers that are no row of this table
+// "1,2,3": the numbers of the columns.
+bool numbers_columns(const Fields& fields) {
+  int number = fields.empty() || fields.front() != "0" ? 1 : 0;
+  return fields.size() >= 2 &&
+         std::ranges::all_of(fields, [&](auto field) { return field == std::to_string(number++); });
+}
 
-class BlockFinder {
- public:
-  BlockFinder(const std::vector<std::string_view>& lines, TableLayout& layout, std::uint64_t most_bad)
-      : lines_(lines), layout_(layout), left_(most_bad) {}
+enum class Kind { text, row, other };  // other: numbers that are no row of this table
 
-  void run() {
-    find_first_words();
-    std::size_t text = 0, others = 0, first_other = 0;  // lines since the last row
-    bool names = false;                                 // the text names columns
-    for (std::size_t i = 0; i < lines_.size(); ++i) {
-      const Kind kind = kind_of(lines_[i]);
-      if (kind == Kind::blank) continue;
-      if (kind == Kind::text) {
-        ++text;
-        names = names || named_roles(fields_).count >= 2;
-        if (open_ && count_fields(fields_, layout_.decimal).numbers > 0) layout_.skippable = false;
-        continue;
-      }
-      const bool in_table = open_ && block_.fields == layout_.fields;
-      if (open_ && text > 0) {
-        // Text between rows ends a block; a few lines of it may be left out.
-        if (names) layout_.skippable = false;
-        const bool joins = kind == Kind::row && in_table && !names && text <= left_;
-        if (joins)
-          left_ -= text;
-        else
-          close();
-      }
-      text = 0;
-      names = false;
-      if (kind == Kind::row) {
-        others = 0;
-        if (open_ && !in_table) close();
-      } else if (open_ && in_table) {
-        if (others++ == 0) first_other = i;
-        block_.end = i + 1;
-        if (others < kOtherRows) continue;
-        block_.end = first_other;
-        close();
-        block_ = {first_other, i + 1, others - 1, fields_now_};
-        open_ = true;
-      }
-      if (!open_) block_ = {i, i, 0, kind == Kind::row ? layout_.fields : fields_now_};
-      open_ = true;
-      block_.end = i + 1;
-      ++block_.rows;
+// Whether most rows begin with a word.
+bool begin_with_words(const std::vector<std::string_view>& lines, const TableLayout& layout) {
+  std::size_t words = 0, rows = 0;
+  Fields fields;
+  for (const std::string_view line : lines) {
+    if (split_table_fields(line, layout.delimiter, fields) != layout.fields || fields.empty()) continue;
+    ++rows;
+    words += count_fields({fields.front()}, layout.decimal).words;
+  }
+  return 2 * words > rows;
+}
+
+// Puts every row into a block.
+void find_blocks(const std::vector<std::string_view>& lines, std::uint64_t most_bad, TableLayout& layout) {
+  // Lines of one kind in sequence.
+  struct Run {
+    Kind kind = Kind::text;
+    RowBlock block;
+    bool names_columns = false, has_numbers = false;
+  };
+  std::vector<Run> runs;
+  Fields fields;
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    if (trimmed(lines[i]).empty() || lines[i].starts_with('#')) continue;
+    const bool row = is_row(layout, lines[i], fields);
+    const std::size_t width = split_table_fields(lines[i], layout.delimiter, fields);
+    const FieldCount count = count_fields(fields, layout.decimal);
+    const bool begins = runs.empty() || runs.back().kind == Kind::text;
+    const bool word = !fields.empty() && count_fields({fields.front()}, layout.decimal).words > 0;
+    Kind kind = Kind::text;
+    // A row without any value does not begin a table, and one of the numbers of the columns (1, 2, 3) is no row.
+    if (row && (count.numbers > 0 || !begins)) kind = begins && numbers_columns(fields) ? Kind::other : Kind::row;
+    if (!row && (layout.first_is_word || !word) && (count.is_row() || count.is_number())) kind = Kind::other;
+    if (runs.empty() || runs.back().kind != kind) runs.push_back({kind, {i, i, 0, width}});
+    Run& run = runs.back();
+    run.block.end = i + 1;
+    ++run.block.rows;
+    run.has_numbers = run.has_numbers || count.numbers > 0;
+    run.names_columns = run.names_columns || (kind == Kind::text && named_roles(fields).count >= 2);
+  }
+  // Text between rows ends a block; a few lines of it, and a few rows of another length, belong to the table.
+  bool in_table = false;
+  const Run* text = nullptr;
+  for (const Run& run : runs) {
+    if (run.kind == Kind::text) {
+      text = layout.blocks.empty() ? nullptr : &run;
+      continue;
     }
-    close();
-    split_off_numbers_of_columns();
-    layout_.skippable = layout_.skippable && std::ranges::all_of(layout_.blocks, [&](const RowBlock& block) {
-                          return block.fields == layout_.fields;
-                        });
-  }
-
- private:
-  Kind kind_of(std::string_view line) {
-    if (trimmed(line).empty() || line.starts_with('#')) return Kind::blank;
-    fields_now_ = split_table_fields(line, layout_.delimiter, fields_);
-    const FieldCount count = count_fields(fields_, layout_.decimal);
-    // A row without any value does not begin a table.
-    if (is_row(layout_, line, fields_)) return count.numbers > 0 || open_ ? Kind::row : Kind::text;
-    if (!layout_.first_is_word && !fields_.empty() && is_word(fields_.front())) return Kind::text;  // "Samples;1200"
-    return count.is_row() || count.is_number() ? Kind::other : Kind::text;
-  }
-  bool is_word(std::string_view field) const {
-    return !field.empty() && !parse_table_cell(field, layout_.decimal) && !is_of_a_clock(field) &&
-           !is_missing_value(field);
-  }
-  // Whether most rows begin with a word.
-  void find_first_words() {
-    std::size_t words = 0, rows = 0;
-    for (const std::string_view line : lines_) {
-      if (split_table_fields(line, layout_.delimiter, fields_) != layout_.fields || fields_.empty()) continue;
-      ++rows;
-      if (is_word(fields_.front())) ++words;
+    const bool row = run.kind == Kind::row;
+    bool joins = in_table && (row || (text == nullptr && run.block.rows < kOtherRows));
+    if (text != nullptr) {
+      joins = joins && !text->names_columns && text->block.rows <= most_bad;
+      layout.skippable = layout.skippable && !text->names_columns && !text->has_numbers;
+      if (joins) most_bad -= text->block.rows;
     }
-    layout_.first_is_word = 2 * words > rows;
-  }
-  void close() {
-    if (open_) layout_.blocks.push_back(block_);
-    open_ = false;
-  }
-  // A row of the numbers of the columns (1, 2, 3) before rows with decimals.
-  void split_off_numbers_of_columns() {
-    Fields next;
-    for (std::size_t b = 0; b < layout_.blocks.size(); ++b) {
-      RowBlock& block = layout_.blocks[b];
-      if (block.rows < 3 || block.fields != layout_.fields) continue;
-      split_table_fields(lines_[block.begin], layout_.delimiter, fields_);
-      std::size_t second = block.begin + 1;
-      while (!is_row(layout_, lines_[second], next)) ++second;
-      int expected = fields_.empty() || fields_.front() != "0" ? 1 : 0;
-      const bool numbered = fields_.size() >= 2 && std::ranges::all_of(fields_, [&](std::string_view field) {
-                              return field == std::to_string(expected++);
-                            });
-      const bool decimals = std::ranges::any_of(
-          next, [&](std::string_view field) { return field.find(layout_.decimal) != std::string_view::npos; });
-      if (!numbered || !decimals) continue;
-      const RowBlock number{block.begin, block.begin + 1, 1, block.fields};
-      block.begin = second;
-      --block.rows;
-      layout_.blocks.insert(layout_.blocks.begin() + static_cast<std::ptrdiff_t>(b), number);
-      layout_.skippable = false;
-      return;
+    if (joins) {
+      layout.blocks.back().end = run.block.end;
+      if (row) layout.blocks.back().rows += run.block.rows;
+    } else {
+      layout.blocks.push_back(run.block);
+      if (row) layout.blocks.back().fields = layout.fields;
+      layout.skippable = layout.skippable && row;
+      in_table = row;
     }
+    text = nullptr;
   }
-
-  const std::vector<std::string_view>& lines_;
-  TableLayout& layout_;
-  std::uint64_t left_;
-  Fields fields_;
-  std::size_t fields_now_ = 0;
-  bool open_ = false;
-  RowBlock block_;
-};
+}
 
 }  // namespace
 
@@ -271,7 +223,8 @@ Result<TableLayout> find_table_layout(const std::vector<std::string_view>& lines
   }
   TableLayout layout{best.delimiter, best.decimal};
   measure_rows(lines, layout);
-  BlockFinder(lines, layout, most_bad).run();
+  layout.first_is_word = begin_with_words(lines, layout);
+  find_blocks(lines, most_bad, layout);
   if (layout.decimal == ',' && !given_decimal)
     if (const Status status = check_decimal_comma(lines, layout); !status) return status.error();
   return layout;

@@ -3,7 +3,9 @@
 #include <charconv>
 #include <chrono>
 #include <cmath>
+#include <functional>
 #include <iterator>
+#include <numeric>
 #include <string>
 
 #include "engine/base/statistics.h"
@@ -139,12 +141,19 @@ bool is_missing_value(std::string_view text) {
       lower_ascii(trimmed(text)));
 }
 
-bool is_of_a_clock(std::string_view field) {
-  return has_date(field) || RowTimes::parse_clock(field, true) || RowTimes::parse_clock(field, false);
+namespace {
+
+// A whole number and a fraction, so that nanoseconds since 1970 keep their digits.
+struct Time {
+  std::int64_t whole = 0;
+  double fraction = 0.0;
+};
+double since(const Time& time, const Time& first) {
+  return static_cast<double>(time.whole - first.whole) + (time.fraction - first.fraction);
 }
 
 // A plain number as a time.
-std::optional<RowTimes::Time> RowTimes::parse_number(std::string_view text, char decimal) {
+std::optional<Time> parse_plain_time(std::string_view text, char decimal) {
   Time time;
   text = trimmed(text);
   const auto whole = std::from_chars(text.data(), text.data() + text.size(), time.whole);
@@ -161,7 +170,7 @@ std::optional<RowTimes::Time> RowTimes::parse_number(std::string_view text, char
   return Time{static_cast<std::int64_t>(std::floor(cell->value)), cell->value - std::floor(cell->value)};
 }
 
-std::optional<RowTimes::Time> RowTimes::parse_clock(std::string_view text, bool day_first) {
+std::optional<Time> parse_clock(std::string_view text, bool day_first) {
   text = trimmed(text);
   std::int64_t days = 0;
   if (parse_date(text, day_first, days)) {
@@ -194,74 +203,73 @@ std::optional<RowTimes::Time> RowTimes::parse_clock(std::string_view text, bool 
   return is_time_zone(trimmed(text)) ? std::optional(time) : std::nullopt;  // the same in every row
 }
 
-Status RowTimes::examine(const Fields& cells, char decimal) {
-  decimal_ = decimal;
-  const auto used = [](std::string_view cell) { return !cell.empty() && !is_missing_value(cell); };
-  const auto first = std::ranges::find_if(cells, used);
-  if (first == cells.end()) return {};
-  clock_ = !parse_number(*first, decimal_) && is_of_a_clock(*first);
-  has_date_ = clock_ && has_date(*first);
-  whole_ = true;
-  // The order of day and month in which every cell is a date; of two the one in which the recording is shorter.
-  std::optional<double> shortest_s;
-  for (const bool day_first : {true, false}) {
-    if (!has_date_) break;
-    std::optional<Time> begin, last;
-    bool all = true;
-    for (const std::string_view cell : cells) {
-      if (!used(cell)) continue;
-      const auto time = parse_clock(cell, day_first);
-      all = all && (time || !is_of_a_clock(cell));
-      if (time && !begin) begin = time;
-      if (time) last = time;
-    }
-    if (!all || !begin) continue;
-    const double seconds = std::abs(since(*last, *begin));
-    if (!shortest_s || seconds < *shortest_s) shortest_s = seconds, day_first_ = day_first;
-  }
+}  // namespace
+
+bool is_of_a_clock(std::string_view field) {
+  return has_date(field) || parse_clock(field, true) || parse_clock(field, false);
+}
+
+void ColumnTimes::measure_steps() {
   std::vector<double> steps;
-  std::optional<Time> last;
   std::size_t intervals = 0;  // also those without a step
-  for (const std::string_view cell : cells) {
-    if (!used(cell)) continue;
-    const auto time = parse(cell);
+  double last = std::nan("");
+  for (const double time : since_first) {
+    if (!std::isfinite(time) || intervals == kStepRows) continue;
+    if (time > last) steps.push_back(time - last);
+    if (time >= last) ++intervals;
+    last = time;
+  }
+  if (steps.empty()) return;
+  const auto count = static_cast<double>(intervals);
+  mean_step = std::accumulate(steps.begin(), steps.end(), 0.0) / count;
+  median_step = nth_smallest(steps, steps.size() / 2) * static_cast<double>(steps.size()) / count;
+}
+
+Result<ColumnTimes> read_times(const Fields& cells, char decimal) {
+  ColumnTimes times;
+  const auto first =
+      std::ranges::find_if(cells, [](std::string_view cell) { return !cell.empty() && !is_missing_value(cell); });
+  times.of_a_clock = first != cells.end() && !parse_plain_time(*first, decimal) && is_of_a_clock(*first);
+  times.with_dates = times.of_a_clock && has_date(*first);
+  // The order of day and month in which the most cells are dates; of two the one in which the recording is shorter.
+  std::vector<std::optional<Time>> parsed;
+  std::pair<std::ptrdiff_t, double> best;  // cells that are no time, duration
+  for (const bool day_first : {true, false}) {
+    std::vector<std::optional<Time>> tried;
+    for (const std::string_view cell : cells)
+      tried.push_back(times.of_a_clock ? parse_clock(cell, day_first) : parse_plain_time(cell, decimal));
+    const auto is_time = [](const auto& time) { return time.has_value(); };
+    const auto begin = std::ranges::find_if(tried, is_time);
+    const auto end = std::find_if(tried.rbegin(), tried.rend(), is_time);
+    const std::pair quality{std::ranges::count_if(tried, std::not_fn(is_time)),
+                            begin == tried.end() ? 0.0 : std::abs(since(**end, **begin))};
+    if (parsed.empty() || quality < best) parsed = std::move(tried), best = quality;
+    if (!times.with_dates) break;
+  }
+  std::optional<Time> start;
+  double last = 0.0;
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    const auto& time = parsed[i];
+    times.since_first.push_back(std::nan(""));
     if (!time) {
       // Cells with digits that are neither text between the rows nor damaged: all are like the first one.
-      if (last || cell.find_first_of("0123456789") == std::string_view::npos) continue;
-      return Error{"found the time \"" + printable(cell) +
+      if (start || cells[i].find_first_of("0123456789") == std::string_view::npos) continue;
+      return Error{"found the time \"" + printable(cells[i]) +
                    "\", which is no number and no time that is understood; write seconds (0.010), or "
                    "hours:minutes:seconds with a decimal mark (14:03:22.010), or, if the rows are evenly spaced, add "
                    "--rate HZ"};
     }
-    if (!last) first_cell_ = static_cast<double>(time->whole) + time->fraction;
-    const double step = last ? since(*time, *last) : -1.0;
-    if (intervals < kStepRows && step > 0.0) steps.push_back(step);
-    if (intervals < kStepRows && step >= 0.0) ++intervals;
-    whole_ = whole_ && time->fraction == 0.0;
-    last = time;
+    if (!start) times.first_cell = static_cast<double>(time->whole) + time->fraction, start = time;
+    times.whole = times.whole && time->fraction == 0.0;
+    double now = since(*time, *start) + static_cast<double>(times.midnights * kDay_s);
+    if (times.of_a_clock && !times.with_dates && last - now > 0.5 * static_cast<double>(kDay_s)) {
+      ++times.midnights;
+      now += static_cast<double>(kDay_s);
+    }
+    times.since_first.back() = last = now;
   }
-  if (steps.empty()) return {};
-  const auto count = static_cast<double>(intervals);
-  for (const double step : steps) mean_step_ += step / count;
-  median_step_ = nth_smallest(steps, steps.size() / 2) * static_cast<double>(steps.size()) / count;
-  return {};
-}
-
-std::optional<double> RowTimes::since_first(std::string_view cell, std::string_view fraction) {
-  auto time = parse(cell);
-  if (!time) return std::nullopt;
-  if (fraction_s_ > 0.0) {
-    double part = 0.0;
-    if (!parse_table_number(fraction, decimal_, part)) return std::nullopt;
-    time->fraction += fraction_s_ * part;
-  }
-  if (!first_) first_ = time;
-  time->whole += midnights_ * kDay_s;
-  if (clock_ && !has_date_ && last_ - since(*time, *first_) > 0.5 * static_cast<double>(kDay_s)) {
-    ++midnights_;
-    time->whole += kDay_s;
-  }
-  return last_ = since(*time, *first_);
+  times.measure_steps();
+  return times;
 }
 
 }  // namespace palpate

@@ -13,9 +13,6 @@ namespace {
 constexpr std::size_t kReach = 12;
 // A line with names of so many roles is a header.
 constexpr int kNamedRoles = 2;
-// Two lines with different names for position and force are rivals, unless the names of one are stronger by more than
-// this, which is the strength of a unit.
-constexpr int kClearStrength = 3;
 
 // Removes the mark of a comment before the names.
 std::string_view without_comment_mark(std::string_view line) {
@@ -27,61 +24,51 @@ std::string_view without_comment_mark(std::string_view line) {
   return trimmed(line.substr(begin));
 }
 
-// In a header separated by blanks, joins units in brackets with the name before.
-void join_bracketed(Fields& fields) {
-  std::size_t kept = 0;
-  for (const std::string_view field : fields) {
-    if (kept > 0 && (field.front() == '[' || field.front() == '(')) {
-      std::string_view& last = fields[kept - 1];
-      last = std::string_view(last.data(), static_cast<std::size_t>(field.data() + field.size() - last.data()));
-    } else {
-      fields[kept++] = field;
-    }
-  }
-  fields.resize(kept);
-}
-
-void split_at_wide_gaps(std::string_view line, Fields& fields) {
-  fields.clear();
-  while (!(line = trimmed(line)).empty()) {
-    const std::size_t end = std::min(line.find("  "), line.find('\t'));
-    fields.push_back(trimmed(line.substr(0, end)));
-    line.remove_prefix(std::min(end, line.size()));
-  }
-}
-
-// Splits a line of names: by the separator of the table, as one of R, whose row numbers have no name, or by any other
-// separator that gives a name for each column. Returns which of these; none: the fields are those of the first.
-enum class Split { own, other, none };
-Split split_names(std::string_view line, std::string_view first_row, const TableLayout& layout, Fields& fields) {
+// Splits a line of names: by the separator of the table; at wide gaps, or before words without units in brackets, where
+// that is blanks; as one of R, whose row numbers have no name; or by any other separator. The fields are those of the
+// first of these that gives a name for each column; without one those of the separator. `own`: not by another one.
+bool split_names(std::string_view line, std::string_view first_row, const TableLayout& layout, Fields& names,
+                 bool& own) {
   const std::string_view bare = without_comment_mark(line);
   const bool blanks = layout.delimiter.is_blanks();
-  const auto fits = [&] { return blanks ? fields.size() == layout.columns : fields.size() >= layout.columns; };
+  own = true;
+  const auto fits = [&] { return blanks ? names.size() == layout.columns : names.size() >= layout.columns; };
   for (const std::string_view text : {line, bare}) {
-    split_table_fields(text, layout.delimiter, fields);
-    if (fits()) return Split::own;
+    split_table_fields(text, layout.delimiter, names);
+    if (fits()) return true;
     if (!blanks) continue;
-    split_at_wide_gaps(text, fields);
-    if (fits()) return Split::own;
-    split_table_fields(text, layout.delimiter, fields);
-    join_bracketed(fields);
-    if (fits()) return Split::own;
+    const Fields words = names;
+    names.clear();
+    for (std::string_view rest = text; !(rest = trimmed(rest)).empty();) {
+      const std::size_t end = std::min({rest.find("  "), rest.find('\t'), rest.size()});
+      names.push_back(trimmed(rest.substr(0, end)));
+      rest.remove_prefix(end);
+    }
+    if (fits()) return true;
+    names.clear();
+    for (const std::string_view word : words) {
+      if (names.empty() || (!word.starts_with('[') && !word.starts_with('(')))
+        names.push_back(word);
+      else
+        names.back() = {names.back().data(), static_cast<std::size_t>(word.data() + word.size() - names.back().data())};
+    }
+    if (fits()) return true;
   }
-  Fields row, names;
+  Fields row;
   split_table_fields(first_row, layout.delimiter, row);
   split_table_fields(line, layout.delimiter, names);
   if (!row.empty() && row.front() == "1" && names.size() + 1 == layout.columns) {
-    fields = std::move(names);
-    fields.insert(fields.begin(), std::string_view());
-    return Split::own;
+    names.insert(names.begin(), std::string_view());
+    return true;
   }
+  own = false;
   for (const Delimiter& other : kDelimiters) {
     split_table_fields(bare, other, names);
-    if (names.size() != layout.columns) continue;
-    fields = std::move(names);
-    return Split::other;
+    if (names.size() == layout.columns) return true;
   }
-  return Split::none;
+  own = true;
+  split_table_fields(bare, layout.delimiter, names);
+  return false;
 }
 
 bool is_names_row(const Fields& fields) {
@@ -113,43 +100,6 @@ UnitCount count_units(const Fields& fields) {
   return count;
 }
 
-// A line above the table.
-struct Line {
-  std::uint64_t number = 0;  // from 1
-  Fields fields;
-  bool fits = true;  // a field for each column
-  bool own = true;   // split by the separator of the table
-  NamedRoles roles;
-  UnitCount units;
-
-  bool is_named() const { return fits && roles.count >= kNamedRoles; }
-  bool is_units() const { return fits && units.decides(); }
-  // A line below the names with some units is a line of units, too.
-  bool has_units() const { return is_units() || (fits && units.known >= 2 && roles.count == 0); }
-
-  int rank() const {
-    if (is_named()) return own ? 4 : 3;
-    if (fits) return 1;
-    return roles.count == static_cast<int>(kRoles) ? 2 : 0;
-  }
-  bool better_than(const Line& other) const {
-    if (rank() != other.rank()) return rank() > other.rank();
-    return is_named() && roles.strength > other.roles.strength;
-  }
-};
-
-Line read_line(std::string_view text, std::string_view first_row, const TableLayout& layout) {
-  Line line;
-  const Split split = split_names(text, first_row, layout, line.fields);
-  line.own = split != Split::other;
-  line.roles = named_roles(line.fields);
-  // Names beyond the columns are those of remarks, but not of a role.
-  const auto beyond = [&](std::size_t column) { return column > layout.widest; };
-  line.fits = split != Split::none && std::ranges::none_of(line.roles.column, beyond);
-  line.units = count_units(line.fields);
-  return line;
-}
-
 // Text files of LabVIEW have the units of the columns above the table and, if the table has no times, the interval and
 // the first time of each channel.
 void read_labview_head(const std::vector<std::string_view>& lines, std::size_t first, TableLayout& layout) {
@@ -178,43 +128,52 @@ void read_labview_head(const std::vector<std::string_view>& lines, std::size_t f
 }  // namespace
 
 void find_table_header(const std::vector<std::string_view>& lines, std::size_t first, TableLayout& layout) {
-  std::vector<Line> candidates;  // the nearest first
-  std::optional<Line> units;
+  // The nearest line of each kind: with names of at least two roles; the same, but without one of each column; with
+  // any words; of units alone.
+  enum { named, misfit, words, units, kinds };
+  std::array<Fields, kinds> fields;
+  std::array<std::size_t, kinds> line{};  // from 1
   std::size_t seen = 0;
   Fields row;
   for (std::size_t i = first; i-- > 0 && seen < kReach;) {
-    // A second block may share the header of the first.
-    if (trimmed(lines[i]).empty() || is_row(layout, lines[i], row)) continue;
+    if (trimmed(lines[i]).empty()) continue;
+    const bool end_of_head = lines[i].starts_with("***");  // of LabVIEW, whose head names the axis
+    if (end_of_head || is_row(layout, lines[i], row)) {
+      if (line[named] > 0) break;
+      continue;  // a second block may share the header of the first
+    }
     ++seen;
-    Line line = read_line(lines[i], lines[first], layout);
-    line.number = i + 1;
-    if (line.is_units()) {
-      if (!units) units = std::move(line);
-    } else if (is_names_row(line.fields) && ((line.fits && line.own) || line.roles.count >= kNamedRoles)) {
-      candidates.push_back(std::move(line));
-    }
+    Fields names;
+    bool own = true;
+    const bool split = split_names(lines[i], lines[first], layout, names, own);
+    const NamedRoles roles = named_roles(names);
+    // Names beyond the columns are those of remarks, but not of a role.
+    const bool fits = split && std::ranges::none_of(roles.column, [&](auto column) { return column > layout.widest; });
+    const UnitCount count = count_units(names);
+    const bool below = line[named] == 0;
+    std::size_t kind = kinds;
+    if (fits && (count.decides() || (count.known >= 2 && roles.count == 0 && below)))
+      kind = units;
+    else if (is_names_row(names) && fits && roles.count >= kNamedRoles)
+      kind = named;
+    else if (is_names_row(names) && roles.count >= kNamedRoles)
+      kind = misfit;
+    else if (is_names_row(names) && fits && own)
+      kind = words;
+    if (kind == named && line[named] > 0 && names != fields[named]) layout.rival = i + 1;
+    if (kind == kinds || line[kind] > 0) continue;
+    line[kind] = i + 1;
+    fields[kind] = std::move(names);
   }
-  const Line* header = nullptr;
-  for (const Line& line : candidates)
-    if (header == nullptr || line.better_than(*header)) header = &line;
-  if (header == nullptr) header = units ? &*units : nullptr;  // the units are the only names
-  if (header != nullptr) {
-    if (units && units->number < header->number) units.reset();
-    for (const Line& line : candidates) {
-      if (&line == header) break;
-      if (!units && header->is_named() && line.has_units()) units = line;
-    }
-    layout.header = header->number;
-    layout.names = header->fields;
-    layout.misfit = !header->fits;
+  const auto header = std::ranges::find_if(line, [](std::size_t number) { return number > 0; }) - line.begin();
+  if (header < kinds) {
+    layout.header = line[static_cast<std::size_t>(header)];
+    layout.names = fields[static_cast<std::size_t>(header)];
+    layout.misfit = header == misfit;
     if (layout.misfit) return;
     layout.columns = std::clamp(layout.names.size(), layout.columns, layout.widest);
     layout.names.resize(layout.columns);
-    if (units) layout.units = units->fields;
-    for (const Line& line : candidates) {
-      const bool weaker = header->roles.strength - line.roles.strength > kClearStrength;
-      if (line.is_named() && !weaker && header->roles.contradicts(line.roles)) layout.rival = line.number;
-    }
+    if (line[units] >= layout.header) layout.units = fields[units];
   }
   read_labview_head(lines, first, layout);
 }

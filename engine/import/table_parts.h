@@ -58,59 +58,21 @@ bool is_missing_value(std::string_view text);
 // "3/5/2024 2:03:22.5 PM", "05-Mar-2024 14:03:22", "14:03:22.123", "03:22.123", "0 days 00:00:01.5".
 bool is_of_a_clock(std::string_view field);
 
-// The times of the rows, from the cells of one column, and of a second one for the fraction of its seconds.
-class RowTimes {
- public:
-  RowTimes() = default;
-  // Decides from all cells of the column whether they are those of a clock, and the order of day and month. Errors: a
-  // cell that is no time, and what to write instead.
-  Status examine(const Fields& cells, char decimal);
-  void add_fractions(double to_s) { fraction_s_ = to_s; }
+// The times of the rows in the unit of the file (of a clock: s), since the first one; NaN where a cell is no time.
+struct ColumnTimes {
+  std::vector<double> since_first{};
+  bool of_a_clock = false, with_dates = false;
+  bool whole = true;         // no cell has a fraction
+  double first_cell = 0.0;   // the first time itself
+  double median_step = 0.0;  // also over rows without a step
+  double mean_step = 0.0;
+  int midnights = 0;  // a clock without dates that goes back by more than half a day has passed midnight
 
-  bool are_of_a_clock() const noexcept { return clock_; }
-  bool have_dates() const noexcept { return has_date_; }
-  bool are_whole_seconds() const noexcept { return whole_; }
-  double median_step() const noexcept { return median_step_; }
-  double mean_step() const noexcept { return mean_step_; }
-  double first_cell() const noexcept { return first_cell_; }
-
-  // The time since the first call in the unit of the file (a clock: s); none if the cell is no time. A clock without
-  // dates that goes back by more than half a day has passed midnight.
-  std::optional<double> since_first(std::string_view cell, std::string_view fraction = {});
-  int midnights() const noexcept { return midnights_; }
-
- private:
-  // A whole number and a fraction, so that nanoseconds since 1970 keep their digits.
-  struct Time {
-    std::int64_t whole = 0;
-    double fraction = 0.0;
-  };
-  static double since(const Time& time, const Time& first) {
-    return static_cast<double>(time.whole - first.whole) + (time.fraction - first.fraction);
-  }
-  static std::optional<Time> parse_clock(std::string_view text, bool day_first);
-  static std::optional<Time> parse_number(std::string_view text, char decimal);
-  std::optional<Time> parse(std::string_view cell) const {
-    return clock_ ? parse_clock(cell, day_first_) : parse_number(cell, decimal_);
-  }
-  friend bool is_of_a_clock(std::string_view field);
-
-  char decimal_ = '.';
-  bool clock_ = false, has_date_ = false, whole_ = false, day_first_ = true;
-  double fraction_s_ = 0.0, median_step_ = 0.0, mean_step_ = 0.0, first_cell_ = 0.0, last_ = 0.0;
-  std::optional<Time> first_;
-  int midnights_ = 0;
+  void measure_steps();
 };
-
-struct RepeatedTimes {
-  std::size_t rows = 0;           // number of rows with the time of the row above
-  bool copies = true;             // all of them have its position and force, too
-  double mean_rate_Hz = 0.0;      // of evenly spaced rows
-  double step_s = 0.0;            // median step of the times
-  std::optional<double> rate_Hz;  // the same if the clock is coarse: equal steps, equally many rows for each time
-};
-// `rows`: times that do not fall.
-RepeatedTimes find_repeated_times(const std::vector<RecordingRow>& rows);
+// Decides from all cells of the column whether they are those of a clock, and the order of day and month. Errors: a
+// cell that is no time, and what to write instead.
+Result<ColumnTimes> read_times(const Fields& cells, char decimal);
 
 // Units (units.cpp). -------------------------------------------------------------------------------------------------
 
@@ -149,7 +111,7 @@ struct TableLayout {
   bool misfit = false;     // the number of names is not that of the columns
   Fields units{};          // one a column; empty without a row of units
   std::size_t header = 0;  // line, from 1; 0 without a header
-  std::size_t rival = 0;   // a line that names other columns for position and force than the header, from 1
+  std::size_t rival = 0;   // another line that names the columns, from 1
   // From a file of LabVIEW without times: the interval and the first time of each column.
   std::vector<double> steps_s{}, starts_s{};
 };
@@ -161,9 +123,8 @@ Result<TableLayout> find_table_layout(const std::vector<std::string_view>& lines
                                       std::uint64_t most_bad);
 // Whether a line is a row of the table, perhaps damaged, by its numbers.
 bool is_row(const TableLayout& layout, std::string_view line, Fields& fields);
-// Finds the lines of names and of units shortly above the row `first`, and sets them in `layout`. Preferred: a line
-// that names at least two of time, position and force (boards print their status below the header); among these one
-// split by the separator of the table, then the one with more names and units, then the nearest.
+// Finds the lines of names and of units shortly above the row `first`, and sets them in `layout`. Preferred is a line
+// that names at least two of time, position and force (boards print their status below the header).
 void find_table_header(const std::vector<std::string_view>& lines, std::size_t first, TableLayout& layout);
 
 // Columns (column_roles.cpp). ----------------------------------------------------------------------------------------
@@ -182,14 +143,10 @@ struct ForeignColumn {
 inline constexpr std::size_t kMostValues = 40;
 NameAndUnit header_parts(std::string_view header);
 
-// How well a line names the columns of a table: the roles that its fields name, by words or units, and the sum of the
-// strongest claims.
+// The roles that the fields of a line name, by words or units.
 struct NamedRoles {
-  int count = 0, strength = 0;
+  int count = 0;
   std::array<std::size_t, kRoles> column{};  // from 1; 0: none, or several with equal claims
-
-  // Whether both name other columns for the position and for the force.
-  bool contradicts(const NamedRoles& other) const;
 };
 NamedRoles named_roles(const Fields& fields);
 

@@ -64,28 +64,25 @@ void replace_all(std::string& text, std::string_view from, char to, bool before_
   text.resize(kept);
 }
 
-// The marks with which serial terminals end the time of arrival that they put before each line.
-constexpr std::string_view kArrivalMark = " -> ";
-constexpr std::size_t kArrivalLines = 50;
-
-bool has_arrivals(const std::string& text) {
+// Makes the times of arrival that a serial terminal puts before each line ("12:30:01.5 -> ") a column of the table.
+// Returns whether there are any.
+bool split_off_arrivals(std::string& text) {
+  constexpr std::string_view kMark = " -> ";
+  constexpr std::size_t kLines = 50;
+  const std::string_view sample = std::string_view(text).substr(0, kEncodingSampleBytes);
   std::size_t with = 0, all = 0;
-  for (const std::string_view line : lines_of(std::string_view(text).substr(0, kEncodingSampleBytes))) {
-    if (trimmed(line).empty() || all == kArrivalLines) continue;
+  for (const std::string_view line : lines_of(sample)) {
+    if (trimmed(line).empty() || all == kLines) continue;
     ++all;
-    const std::size_t mark = line.find(kArrivalMark);
+    const std::size_t mark = line.find(kMark);
     if (mark != std::string_view::npos && is_of_a_clock(line.substr(0, mark))) ++with;
   }
-  return with >= 2 && 2 * with > all;
-}
-
-// Makes the times of arrival a column of the table.
-void split_off_arrivals(std::string& text) {
-  const std::string_view sample = std::string_view(text).substr(0, kEncodingSampleBytes);
+  if (with < 2 || 2 * with <= all) return false;
   const std::size_t mark = std::min(sample.find_first_of("\t;"), sample.find(','));
   const char separator = mark < sample.size() ? sample[mark] : ' ';
-  for (std::size_t at = 0; (at = text.find(kArrivalMark, at)) != std::string::npos; ++at)
-    text.replace(at, kArrivalMark.size(), 1, separator);
+  for (std::size_t at = 0; (at = text.find(kMark, at)) != std::string::npos; ++at)
+    text.replace(at, kMark.size(), 1, separator);
+  return true;
 }
 
 Error wrong_kind(const std::string& path, const char* found, const char* advice) {
@@ -150,8 +147,7 @@ Result<ForeignText> read_foreign_text(const std::string& path) {
     if (foreign.text.find(minus) != std::string::npos) replace_all(foreign.text, minus, '-', true);
   for (const std::string_view blank : {"\xC2\xA0", "\xE2\x80\xAF"})  // U+00A0, U+202F
     if (foreign.text.find(blank) != std::string::npos) replace_all(foreign.text, blank, ' ', false);
-  foreign.has_arrivals = has_arrivals(foreign.text);
-  if (foreign.has_arrivals) split_off_arrivals(foreign.text);
+  foreign.has_arrivals = split_off_arrivals(foreign.text);
   return foreign;
 }
 

@@ -53,6 +53,9 @@ std::string words(const char* format, Values... values) {
   return text;
 }
 
+// A force that is later brings forces of presses into free air, which are no drift.
+constexpr double kLateForce_s = 0.05;
+
 class Checker {
  public:
   Checker(const PreparedRecording& prepared, const CheckRequest& request, const RecordingFaults& faults)
@@ -234,6 +237,7 @@ class Checker {
           words("the force is %.3g N in free air", surface_.force_zero_N),
           large ? "tare the sensor before recording, or subtract this: " + correction() : "");
     }
+    if (std::abs(lag_s_) > kLateForce_s) return;
     const ZeroDrift drift = find_zero_drift(prepared_);
     if (!(drift.range_N > std::max(half_jnd_N, 6.0 * drift.standard_error_N))) return;
     std::string text = words("the force in free air covers a range of %.3g N", drift.range_N);
@@ -260,6 +264,7 @@ class Checker {
     // Without an onset of force, a lag cannot be distinguished from the material's memory.
     if (!surface_.air.found) return;
     const OffsetEstimate lag = find_force_lag(prepared_.rows, noise_N_);
+    lag_s_ = lag.at;
     if (lag.at == 0.0) return;
     if (!std::isfinite(lag.standard_error)) {
       add("lag", Severity::warning, lag.at,
@@ -330,7 +335,7 @@ class Checker {
   // Where the surface is not identified, rows outside of 0 are no contact, whatever their force.
   void check_outside() {
     const auto outside = static_cast<std::size_t>(std::ranges::count_if(recording_.rows, [&](const RecordingRow& row) {
-      return !(row.position_m > 0.0) && row.force_N - surface_.force_zero_N > certain_force_N(noise_N_);
+      return !(row.position_m > 0.0) && std::abs(row.force_N - surface_.force_zero_N) > certain_force_N(noise_N_);
     }));
     if (outside == 0) return;
     add("force_outside", Severity::warning, static_cast<double>(outside),
@@ -401,6 +406,7 @@ class Checker {
   const Recording& recording_ = prepared_.recording;
   const SurfaceEstimate& surface_ = prepared_.surface;
   const double noise_N_ = white_force_noise_N(prepared_);
+  double lag_s_ = 0.0;
   RecordingCheck check_;
   RecordingMeasures& measures_ = check_.measures;
 };

@@ -499,6 +499,9 @@ OffsetEstimate find_force_lag(const std::vector<Sample>& rows, double force_nois
   if (!lag.identified && far_s != 0.0)
     lag = {std::abs(lag.minimum_at - far_s) <= kFarStep_s ? lag.minimum_at : far_s, true, 0.5 * kFarStep_s, true,
            far_s};
+  // Blocks that disagree on a short lag by more than the required accuracy still show that there is one.
+  if (!lag.identified && far_s == 0.0 && lag.not_zero)
+    lag = {lag.minimum_at, true, kSignificantErrors * kAccuracy_s, true, lag.minimum_at};
   // A force that is read once a row is late by anything up to the interval of the rows, evenly distributed.
   lag.standard_error = std::hypot(lag.standard_error, step_s / std::sqrt(12.0));
   if (std::abs(lag.at) < kSignificantErrors * lag.standard_error) lag.at = 0.0;

@@ -11,6 +11,7 @@
 #include "engine/import/import_table.h"
 #include "models/samples/samples.h"
 #include "scenes/cli/verbs.h"
+#include "scenes/evaluation/evaluate.h"
 
 namespace palpate::cli {
 namespace {
@@ -20,7 +21,7 @@ struct ImportOptions {
   std::vector<std::string> columns, units, flips;
   std::string decimal;
   ImportRequest request;  // its rate, gain and number of bad rows
-  std::string origin, tare, rows;
+  std::string origin, begin_as, tare, rows;
   bool json = false, force = false;
 };
 
@@ -82,7 +83,7 @@ std::optional<double> finite_number(const std::string& text) {
   return parse_number(text.data(), end, value) == end ? std::optional(value) : std::nullopt;
 }
 
-// Applies --tare and then --zero: "auto", "contact", "first" or a value. Adds a note for each.
+// Applies --tare and then --begin-as or --zero: "auto", "contact", "first" or a value. Adds a note for each.
 Status move_zeros(const ImportOptions& options, ImportedTable& table) {
   Recording& recording = table.recording;
   if (!options.tare.empty()) {
@@ -96,9 +97,19 @@ Status move_zeros(const ImportOptions& options, ImportedTable& table) {
     for (RecordingRow& row : recording.rows) row.force_N -= zero_N;
     table.notes.push_back("force 0 was at " + fixed(zero_N, 4) + " N in the table");
   }
-  if (options.origin.empty()) return {};
-  double at_m = recording.rows.front().position_m;
-  if (options.origin == "contact") {
+  if (options.origin.empty() && options.begin_as.empty()) return {};
+  const RecordingRow first = recording.rows.front();
+  double at_m = first.position_m;
+  if (!options.begin_as.empty()) {
+    const auto other = read_recording(options.begin_as);
+    if (!other) return Error{"--begin-as: " + other.error().message};
+    const RecordingRow& begin = other->rows.front();
+    if (!same_preload(first.force_N, begin.force_N, JndLine{}))
+      return Error{"found " + general(first.force_N, 3) + " N in the first row and " + general(begin.force_N, 3) +
+                   " N in that of " + options.begin_as +
+                   ", expected the same preload of more than 0.2 N; give --zero a position in metres"};
+    at_m -= begin.position_m;
+  } else if (options.origin == "contact") {
     const SurfaceEstimate surface = prepare_recording(recording)->surface;
     if (!surface.identified()) {
       return Error{std::string("the position where the force begins cannot be identified") +
@@ -110,7 +121,8 @@ Status move_zeros(const ImportOptions& options, ImportedTable& table) {
     at_m = finite_number(options.origin).value_or(0.0);  // checked by check_zero
   }
   for (RecordingRow& row : recording.rows) row.position_m -= at_m;
-  table.notes.push_back("position 0 was at " + fixed(1e3 * at_m, 4) + " mm in the table");
+  table.notes.push_back("position 0 was at " + fixed(1e3 * at_m, 4) + " mm in the table" +
+                        (options.begin_as.empty() ? "" : ": the recording begins where " + options.begin_as + " does"));
   return {};
 }
 
@@ -188,7 +200,9 @@ void print_import_json(const ImportOptions& options, const ImportRequest& reques
 }
 
 Status run_import(const ImportOptions& options) {
-  if (const Status status = refuse_input_as_output(options.out, {options.file}, "--out"); !status) return status;
+  std::vector<std::string> inputs = {options.file};
+  if (!options.begin_as.empty()) inputs.push_back(options.begin_as);
+  if (const Status status = refuse_input_as_output(options.out, inputs, "--out"); !status) return status;
   const ImportRequest request = import_request(options);
   // Reports before the import if the output cannot be written.
   if (const auto trial = AtomicFile::create(options.out, options.force); !trial) return trial.error();
@@ -229,10 +243,17 @@ void add_import(CLI::App& app, Verbs& verbs) {
   verb->add_option("--flip", options->flips, "Reverse the sign of position, force or both")
       ->delimiter(',')
       ->check(CLI::IsMember({"position", "force", "both"}));
-  verb->add_option("--zero,--origin", options->origin,
-                   "Position that becomes 0: contact (where the force begins), first (the first row), or a value in m "
-                   "[unchanged]")
-      ->check(CLI::Validator(check_zero, "contact|first|M"));
+  CLI::Option* zero =
+      verb->add_option(
+              "--zero,--origin", options->origin,
+              "Position that becomes 0: contact (where the force begins), first (the first row), or a value in m "
+              "[unchanged]")
+          ->check(CLI::Validator(check_zero, "contact|first|M"));
+  verb->add_option("--begin-as", options->begin_as,
+                   "Training recording under the same preload: the positions are moved so that both begin at one "
+                   "position, which uses the first force of this recording [unchanged]")
+      ->excludes(zero)
+      ->type_name("REC.csv");
   verb->add_option("--tare", options->tare,
                    "Force that becomes 0: auto (the force of free air), or a value in N [unchanged]")
       ->check(CLI::Validator(check_tare, "auto|N"));

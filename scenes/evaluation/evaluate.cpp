@@ -142,19 +142,23 @@ class Evaluator {
 
 }  // namespace
 
+bool same_preload(double first_N, double other_first_N, const JndLine& jnd) {
+  constexpr double kLeastPreload_N = 0.2, kSame_jnd = 3.0;
+  return std::abs(first_N) > kLeastPreload_N && std::abs(other_first_N) > kLeastPreload_N &&
+         std::abs(first_N - other_first_N) < kSame_jnd * jnd.at(first_N);
+}
+
 double preload_offset_m(const Recording& recording, const EvaluatedModel& model) {
-  constexpr double kLeastPreload_N = 0.2, kLeastMove = 0.02, kSame_jnd = 3.0;
+  constexpr double kLeastMove = 0.02;
   const RecordingRow& first = recording.rows.front();
   const std::vector<RecordingEnds>& ends = model.model->ends();
   const auto away_N = [&](const RecordingEnds& one) { return std::abs(one.first_force_N - first.force_N); };
   const auto nearest = std::ranges::min_element(ends, {}, away_N);
-  if (nearest == ends.end() || std::abs(first.force_N) <= kLeastPreload_N ||
-      std::abs(nearest->first_force_N) <= kLeastPreload_N)
+  if (nearest == ends.end() || !same_preload(first.force_N, nearest->first_force_N, model.jnd) ||
+      !in_contact(tool_sample(first), model.model->surface_m()))
     return 0.0;
   const double offset_m = first.position_m - nearest->first_position_m;
-  const bool same = away_N(*nearest) < kSame_jnd * model.jnd.at(first.force_N) &&
-                    in_contact(tool_sample(first), model.model->surface_m());
-  return same && std::abs(offset_m) >= kLeastMove * model.model->deepest_m() ? offset_m : 0.0;
+  return std::abs(offset_m) >= kLeastMove * model.model->deepest_m() ? offset_m : 0.0;
 }
 
 Recording with_force_zero(Recording recording, double force_zero_N) {

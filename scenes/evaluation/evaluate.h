@@ -76,6 +76,8 @@ struct EvaluatedModel {
   JndLine jnd;
 };
 
+// Whether two recordings begin under one preload: beyond 0.2 N, and their first forces differ by less than 3 JND.
+bool same_preload(double first_N, double other_first_N, const JndLine& jnd);
 // What is to be subtracted from the positions of a recording that begins at rest under a preload, so that it begins
 // where the training recording with the nearest first force begins; 0 if there is no preload, no such recording, or a
 // distance below 2 % of the range. It uses a force of the test, so that it is no figure as recorded.

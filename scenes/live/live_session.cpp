@@ -316,10 +316,11 @@ std::optional<LiveSession::Worst> LiveSession::worst(std::size_t slot, bool of_t
 }
 
 // Replays the test twice: to find the moment, and to keep the ticks around it.
-std::optional<LiveSession::Worst> LiveSession::worst_of_test(std::size_t slot, const Recording& recording,
+std::optional<LiveSession::Worst> LiveSession::worst_of_test(std::size_t slot, const Recording& as_recorded,
                                                              double zero_s) const {
   constexpr double kBefore_s = 6.0, kAfter_s = 2.0;
   const std::vector<std::size_t> slots = models_.ready_slots();
+  const Recording recording = with_force_zero(as_recorded, test_.force_zero_N());
   const double begin_s = recording.rows.front().time_s;
   // Calls `use` with every tick and its row.
   const auto each_tick = [&](const auto& use) {
@@ -409,12 +410,16 @@ void LiveSession::update_verdict() {
   verdict_ = judge(judged, of_model ? models_.info(*models_.reference()).name : "");
   note(start_.verdict_s, true);
   models_.propose(*verdict_.chosen);
-  verdict_.detail =
-      (of_model           ? "There is no true force here: open a second recording to test on (O)."
-       : live             ? "The test is the presses so far, against " + reference_words(true) + "."
-       : tests_training() ? "The test is " + test_name() + ", to which the models were fitted."
-                          : "The test is " + test_name() + ", which no model was fitted to; it chose the model.") +
-      verdict_.detail;
+  const std::string test =
+      "The test is " + test_name() +
+      (test_.force_zero_N() == 0.0
+           ? ""
+           : ", its forces counted from the " + three_digits(1e3 * test_.force_zero_N()) + " mN of its free air");
+  verdict_.detail = (of_model           ? "There is no true force here: open a second recording to test on (O)."
+                     : live             ? "The test is the presses so far, against " + reference_words(true) + "."
+                     : tests_training() ? test + ", to which the models were fitted."
+                                        : test + ", which no model was fitted to; it chose the model.") +
+                    verdict_.detail;
 }
 
 Verdict LiveSession::verdict() const {

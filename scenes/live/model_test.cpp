@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "models/model/fitted_model.h"
+#include "models/samples/samples.h"
 #include "scenes/evaluation/evaluate.h"
 #include "scenes/worker/model_worker.h"
 
@@ -47,6 +48,8 @@ ModelTest::Outcome ModelTest::run(const Models& untested, const Models& timed) {
     made_ = std::move(*made);
   }
   const Recording* recording = replay_ != nullptr ? &replay_->recording() : made_ ? &*made_ : nullptr;
+  if (recording != nullptr && !air_N_) air_N_ = prepare_recording(*recording)->surface.force_zero_N;
+  outcome.force_zero_N = air_N_.value_or(0.0);
   if (recording == nullptr) {
     for (const auto& model : untested) outcome.tested.push_back({model, {}, {}, {}});
   } else if (!untested.empty()) {
@@ -55,6 +58,7 @@ ModelTest::Outcome ModelTest::run(const Models& untested, const Models& timed) {
     EvaluationRequest request;
     request.control.progress = progress;
     request.move_surface = replay_ != nullptr;
+    request.force_zero_N = outcome.force_zero_N;
     auto result = evaluate(*recording, evaluated, request);
     if (!result) return outcome;
     const auto errors_of = [](const ModelErrors& errors) -> Errors {
@@ -67,7 +71,10 @@ ModelTest::Outcome ModelTest::run(const Models& untested, const Models& timed) {
     }
     samples_ = std::move(result->timing);
   }
-  if (replay_ != nullptr) outcome.surface = locate_surface(thinned_rows(*recording, kSearchRows), timed, jnd_);
+  if (replay_ != nullptr) {
+    const Recording zeroed = with_force_zero(*recording, outcome.force_zero_N);
+    outcome.surface = locate_surface(thinned_rows(zeroed, kSearchRows), timed, jnd_);
+  }
   outcome.timed = timed;
   for (const ModelTiming& timing : time_models(timed, samples_)) outcome.ticks.push_back(timing.tick);
   return outcome;
@@ -81,6 +88,7 @@ void ModelTest::take(Outcome outcome) {
     if (at != outcome.timed.end()) one.tick = outcome.ticks[static_cast<std::size_t>(at - outcome.timed.begin())];
   }
   if (outcome.timed == ready_) surface_ = outcome.surface;
+  force_zero_N_ = outcome.force_zero_N;
 }
 
 const ModelTest::Tested* ModelTest::find(const ForceModel* model) const noexcept {

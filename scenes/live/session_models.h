@@ -191,7 +191,8 @@ class SessionModels {
 // to, as `palpate replay` and the report compute them (scenes/evaluation/evaluate.h), and the time of their ticks. The
 // result does not depend on what the user presses. The recording is the one that is replayed, a part of the training
 // recording that was set apart, or that of the scene's material with another seed.
-// Of a replayed recording, it also estimates one surface offset for all models together, which the user can apply.
+// The forces of the recording count from its own free air, as in `palpate fit`. Of a replayed recording, it also
+// estimates one surface offset for all models together, which the user can apply.
 // A separate thread tests each model when it becomes ready, and times all models together when all fits have ended, so
 // that a slow phase of the machine affects all of them.
 // Thread guarantee: one thread; only the destructor waits, some tenths of a second.
@@ -217,6 +218,8 @@ class ModelTest {
     if (running_.valid()) return nullptr;
     return replay_ != nullptr ? &replay_->recording() : made_ ? &*made_ : nullptr;
   }
+  // The force of its free air, which is subtracted; 0: none, or not significant.
+  double force_zero_N() const noexcept { return force_zero_N_; }
   // Number of tests with results.
   std::uint64_t results() const noexcept { return results_; }
 
@@ -247,6 +250,7 @@ class ModelTest {
     Models timed;
     std::vector<Timing> ticks;  // of `timed`
     OffsetEstimate surface;
+    double force_zero_N = 0.0;
   };
   Outcome run(const Models& untested, const Models& timed);
   void take(Outcome outcome);
@@ -259,7 +263,9 @@ class ModelTest {
   Models ready_;  // of the last test
   std::vector<Tested> tested_;
   OffsetEstimate surface_;
+  double force_zero_N_ = 0.0;
   // The thread of the test only.
+  std::optional<double> air_N_;
   std::optional<Recording> made_;
   std::vector<TimedSamples> samples_;  // to time models on; none without a recording
   std::atomic<bool> cancelled_{false};

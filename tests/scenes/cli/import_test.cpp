@@ -3,6 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "engine/base/text.h"
 #include "engine/recording/recording.h"
 #include "tests/support/message_parts.h"
 #include "tests/support/run_program.h"
@@ -72,6 +73,23 @@ TEST(ImportVerb, MovesTheOriginUnderBothNames) {
     EXPECT_EQ(recording.rows[0].position_m, 0.0) << option << ": -1 mm in the file";
     EXPECT_NEAR(recording.rows[1].position_m, 0.522e-3, 1e-6) << option;
   }
+}
+
+// A pad that is pressed with some 5 N before each recording begins, at another height each time.
+TEST(ImportVerb, MovesTheBeginningToThatOfARecordingUnderTheSamePreload) {
+  const test::TemporaryFolder folder;
+  std::string train = "time_s,position_m,force_N\n", other = train;
+  for (int i = 0; i < 50; ++i) {
+    train += fixed(0.01 * i, 2) + "," + fixed(2e-3 + 1e-5 * i, 5) + "," + fixed(5.0 + 0.1 * i, 2) + "\n";
+    other += fixed(0.01 * i, 2) + "," + fixed(7e-3 + 1e-5 * i, 5) + "," + fixed(5.2 + 0.1 * i, 2) + "\n";
+  }
+  const std::string begin = folder.with_file("train.csv", train), out = folder.file("rec.csv");
+  const std::string file = folder.with_file("other.csv", other), out_of_air = folder.file("x.csv");
+  const auto run = test::must_run({"import", file, "--out", out, "--begin-as", begin});
+  EXPECT_TRUE(test::has_parts(run.out, {"position 0 was at 5.0000 mm in the table", "begins where", "train.csv does"}));
+  EXPECT_NEAR(read_recording(out)->rows.back().position_m, 2.49e-3, 1e-9);
+  EXPECT_TRUE(test::fails(1, {"import", kFiles + "02_matlab.csv", "--out", out_of_air, "--begin-as", begin},
+                          {"expected the same preload of more than 0.2 N"}));
 }
 
 TEST(ImportVerb, WrongUsageEndsWithTwo) {

@@ -123,13 +123,17 @@ void fit_to(const Recording& recording, const TemporaryFolder& folder, const std
 TEST_F(SessionOfFiles, MovesTheSurfaceOfARecordingToThatOfTheModels) {
   Recording training = test::example_recording(3000, 1000.0, 30e-6);
   fit_to(training, folder, "fitted.json");
-  for (RecordingRow& row : training.rows) row.position_m += 0.3e-3;
+  for (RecordingRow& row : training.rows) row.position_m += 0.3e-3, row.force_N += 0.18;
   ASSERT_TRUE(write_recording(folder.file("shifted.csv"), training, {}, false).ok());
   SessionRequest request = of_files("replay:" + folder.file("shifted.csv"));
   request.models = {folder.file("fitted.json")};
   const Session session = must(LiveSession::open(request));
   ASSERT_TRUE(frames_until(*session, [&] { return session->test().found_m() != 0.0; }));
   EXPECT_NEAR(session->test().found_m(), 0.3e-3, 0.02e-3);
+  EXPECT_NEAR(session->test().force_zero_N(), 0.18, 0.005);
+  ASSERT_TRUE(frames_until(*session, [&] { return session->verdict().chosen.has_value(); }));
+  EXPECT_TRUE(
+      test::has_parts(session->verdict().detail, {"The test is shifted, its forces counted from the 180 mN of"}));
   EXPECT_EQ(session->replay()->surface_offset_m(), 0.0) << "as recorded, as in a report";
   ASSERT_TRUE(frames_until(*session, [&] { return session->figures(0).errors.samples > 300; }));
   const double recorded_N = session->figures(0).errors.rms_error_N;
