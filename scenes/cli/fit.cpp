@@ -138,6 +138,9 @@ void print_fit(const PreparedTraining& prepared, const MethodFit& fit, double se
                                     (accelerometer ? " (with the accelerometer)" : " (from positions alone)"));
   print_line("written", out);
   print_line("next", with_program_name("palpate replay --recording TEST.csv --model ") + shell_word(out));
+  print_line("best method", "not determined by one fit; " +
+                                with_program_name("palpate report --train TRAINING.csv --test TEST.csv --out DIR") +
+                                " compares all by one rule");
 }
 
 Status run_fit(const FitArguments& arguments) {
