@@ -379,8 +379,12 @@ class LagRegression {
     Eigen::VectorXd predicted_N;
     for (int pass = 0; pass < kPasses; ++pass) {
       const Design scaled = scale.asDiagonal() * design;
-      const Eigen::MatrixXd gram = scaled.transpose() * scaled;
-      predicted_N = design * solve_non_negative(gram, scaled.transpose() * scale.cwiseProduct(force_N_));
+      // The matrix is stored by rows, which is its transpose stored by columns.
+      const Eigen::Map<const Eigen::MatrixXd> transposed(scaled.data(), kColumns, scaled.rows());
+      Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(kColumns, kColumns);
+      gram_of_transpose(transposed, gram);
+      gram.triangularView<Eigen::StrictlyUpper>() = gram.transpose();
+      predicted_N = design * solve_non_negative(gram, transposed * scale.cwiseProduct(force_N_));
       for (Eigen::Index i = 0; i < scale.size(); ++i) {
         // An idle row counts a hundredth: without any the next fit would be free there.
         const double idle = is_idle(i, predicted_N(i)) ? kIdleScale : 1.0;
