@@ -378,13 +378,11 @@ class LagRegression {
     Eigen::VectorXd scale = scale_;
     Eigen::VectorXd predicted_N;
     for (int pass = 0; pass < kPasses; ++pass) {
-      const Design scaled = scale.asDiagonal() * design;
-      // The matrix is stored by rows, which is its transpose stored by columns.
-      const Eigen::Map<const Eigen::MatrixXd> transposed(scaled.data(), kColumns, scaled.rows());
-      Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(kColumns, kColumns);
-      gram_of_transpose(transposed, gram);
+      const Eigen::MatrixXd scaled = (scale.asDiagonal() * design).transpose();  // one column a row
+      Eigen::MatrixXd gram(kColumns, kColumns);
+      gram_of_transpose(scaled, gram);
       gram.triangularView<Eigen::StrictlyUpper>() = gram.transpose();
-      predicted_N = design * solve_non_negative(gram, transposed * scale.cwiseProduct(force_N_));
+      predicted_N = design * solve_non_negative(gram, scaled * scale.cwiseProduct(force_N_));
       for (Eigen::Index i = 0; i < scale.size(); ++i) {
         // An idle row counts a hundredth: without any the next fit would be free there.
         const double idle = is_idle(i, predicted_N(i)) ? kIdleScale : 1.0;
