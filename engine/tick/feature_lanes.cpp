@@ -10,59 +10,57 @@ namespace {
 // Smaller values are set to 0: denormals would slow every later operation.
 constexpr double kNothing_N = 1e-30;
 
-using Bits [[gnu::vector_size(sizeof(V4))]] = std::int64_t;
+// Whether x is not near the kept one.
+PALPATE_INLINE bool is_far(double x, double kept) noexcept { return x != kept; }
+PALPATE_INLINE bool is_far(const V4& x, const V4& kept) noexcept {
+  const auto far = x != kept;
+  return (far[0] | far[1] | far[2] | far[3]) != 0;
+}
 
-// Replaces each x by exp(x), clamped like to_exponential:
-//   exp(x) = exp(k / 128) sum_(n <= 5) r^n / n!,  |r| <= 1/256, so that the rest of the series is below 6e-18.
-PALPATE_INLINE void to_exponentials(V4* x, std::size_t count, KeptExponential* kept) noexcept {
-  constexpr double kRound = 0x1.8p45;  // the sum of this and a number has the number, rounded to 1/128
-  Bits moved{};
-  for (std::size_t i = 0; i < count; ++i) {
-    x[i] = x[i] < -700.0 ? V4{} - 700.0 : x[i];
-    x[i] = x[i] > 700.0 ? V4{} + 700.0 : x[i];
-    moved |= ((x[i] + kRound) - kRound) != kept[i].at;
+// exp(x (1 + more)), x < 2^47. Makes `kept` the exponential near it and sets `rest` to the quotient of both minus 1:
+//   sum_(1 <= n <= 6) r^n / n!,  r = x + x more - kept.at, |r| <= 1/64, so that the rest of the series is below 5e-17.
+template <typename Number>
+PALPATE_INLINE void split_exponential(const Number& x, double more, KeptExponential<Number>& kept,
+                                      Number& rest) noexcept {
+  constexpr double kRound = 0x1.8p47;  // the sum of this and a number has the number, rounded to 1/32
+  const Number change = x * more;
+  const Number near = ((x + change) + kRound) - kRound;
+  if (is_far(near, kept.at)) [[unlikely]] {
+    V4 value = V4{} + near;
+    to_exponential(value);
+    kept.at = near;
+    kept.value = reinterpret_cast<const Number&>(value);  // all lanes, or the first
   }
-  if ((moved[0] | moved[1] | moved[2] | moved[3]) != 0) [[unlikely]] {
-    for (std::size_t i = 0; i < count; ++i) {
-      kept[i].at = kept[i].value = (x[i] + kRound) - kRound;
-      to_exponential(kept[i].value);
-    }
-  }
-  for (std::size_t i = 0; i < count; ++i) {
-    const V4 r = x[i] - kept[i].at;
-    const V4 r2 = r * r;
-    const V4 rest = r + r2 * ((1.0 / 2 + r * (1.0 / 6)) + r2 * (1.0 / 24 + r * (1.0 / 120)));
-    x[i] = kept[i].value + kept[i].value * rest;
-  }
+  const Number r = (x - kept.at) + change;
+  const Number r2 = r * r;
+  const Number r4 = r2 * r2;
+  rest = (r + r2 * (1.0 / 2 + r * (1.0 / 6))) + r4 * ((1.0 / 24 + r * (1.0 / 120)) + r2 * (1.0 / 720));
 }
 
 // z' = keep z + gain (g(d') - g(d)). `step_s`: 0 for no step.
-PALPATE_INLINE void advance_groups(const BranchLanes::Group* group, std::size_t count, bool slows, double last_depth_m,
-                                   double depth_m, double step_s, PartMemory* memory) noexcept {
+PALPATE_INLINE void advance_groups(const BranchLanes::Group* group, std::size_t count, double last_depth_m,
+                                   double depth_m, double step_s, V4* value, V4* drive_N,
+                                   KeptExponential<double>* slowed, KeptExponential<V4>* kept) noexcept {
   const double middle_m = 0.5 * (last_depth_m + depth_m), per_step = 1.0 / step_s;
-  const bool steps = step_s > 0.0;
-  V4 time_s[kMaxLaneGroups], keep[kMaxLaneGroups];
-  if (steps && slows) {
-    for (std::size_t i = 0; i < count; ++i) {
-      const V4 strain = middle_m * group[i].per_slowing_m;
-      time_s[i] = group[i].slowing * (strain > 1.0 ? V4{} + 1.0 : strain);
-    }
-    to_exponentials(time_s, count, memory->slowed);
-  }
-  for (std::size_t i = 0; steps && i < count; ++i) {
-    time_s[i] = slows ? group[i].relaxation_time_s * time_s[i] : group[i].relaxation_time_s;
-    keep[i] = -step_s / time_s[i];
-  }
-  if (steps) to_exponentials(keep, count, memory->kept);
-  for (std::size_t i = 0; i < count; ++i) {
+  double faster = 1.0, more = 0.0, per_faster = per_step;  // times are divided by faster (1 + more)
+  for (std::size_t i = 0; i < count; ++i, ++group) {
     V4 drive;
-    evaluate_curve(drive, group[i].drive, depth_m);
-    if (steps) {
-      const V4& last = memory->value[i];
-      const V4 kept = keep[i] * (((last < kNothing_N) & (last > -kNothing_N)) ? V4{} : last);
-      memory->value[i] = kept + time_s[i] * (1.0 - keep[i]) * per_step * (drive - memory->drive_N[i]);
+    evaluate_curve(drive, group->drive, depth_m);
+    if (step_s > 0.0) {
+      if (group->slows) {
+        const double strain = middle_m * group->per_slowing_m;
+        split_exponential(group->per_slowing * (strain < 1.0 ? strain : 1.0), 0.0, slowed[i], more);
+        faster = slowed[i].value;
+        per_faster = per_step / (faster + faster * more);
+      }
+      V4 rest;
+      split_exponential<V4>(-step_s * faster * group->rate_per_s, more, kept[i], rest);
+      const V4 keep = kept[i].value + kept[i].value * rest;
+      const V4& last = value[i];
+      const V4 remaining = keep * (((last < kNothing_N) & (last > -kNothing_N)) ? V4{} : last);
+      value[i] = remaining + group->relaxation_time_s * per_faster * (1.0 - keep) * (drive - drive_N[i]);
     }
-    memory->drive_N[i] = drive;
+    drive_N[i] = drive;
   }
 }
 
@@ -95,21 +93,26 @@ PALPATE_INLINE void bend_groups(const BristleLanes::Group* group, std::size_t co
 
 // Calls a loop over groups, which is compiled twice, for the baseline and with four lanes to an instruction; the bits
 // are the same.
+template <auto loop, typename... Arguments>
+[[gnu::noinline]] void call_plain(Arguments... arguments) noexcept {
+  loop(arguments...);
+}
+
 #ifdef __x86_64__
 const bool kWide = __builtin_cpu_supports("avx2") != 0;
 
 template <auto loop, typename... Arguments>
-[[gnu::target("avx2")]] auto call_wide(Arguments... arguments) noexcept {
-  return loop(arguments...);
+[[gnu::target("avx2")]] void call_wide(Arguments... arguments) noexcept {
+  loop(arguments...);
 }
 #endif
 
 template <auto loop, typename... Arguments>
-auto call(Arguments... arguments) noexcept {
+void call(Arguments... arguments) noexcept {
 #ifdef __x86_64__
   if (kWide) return call_wide<loop>(arguments...);
 #endif
-  return loop(arguments...);
+  call_plain<loop>(arguments...);
 }
 
 // The group of the next part after `count` parts.
@@ -130,18 +133,24 @@ void CurveLanes::set(std::size_t lane, const DriveCurve& drive) noexcept {
 
 std::size_t BranchLanes::add(const DriveCurve& drive, double relaxation_time_s, double slowing,
                              double slowing_depth_m) {
+  const double per_slowing = -slowing, per_slowing_m = 1.0 / slowing_depth_m;
+  const bool as_last = !groups_.empty() && groups_.back().per_slowing == per_slowing &&
+                       (groups_.back().per_slowing_m == per_slowing_m || slowing == 0.0);
+  if (!as_last) count_ = kLanes * groups_.size();
   Group& group = group_of_next(groups_, count_);
   const std::size_t lane = count_ % kLanes;
   group.drive.set(lane, drive);
   group.relaxation_time_s[lane] = relaxation_time_s;
-  group.slowing[lane] = slowing;
-  group.per_slowing_m[lane] = 1.0 / slowing_depth_m;
-  slows_ = slows_ || slowing != 0.0;
+  group.rate_per_s[lane] = std::min(1e9, 1.0 / relaxation_time_s);  // of 1 ns nothing is left after any step
+  if (!as_last) group.slows = groups_.size() > 1 || slowing != 0.0;
+  group.per_slowing = per_slowing;
+  group.per_slowing_m = per_slowing_m;
   return count_++;
 }
 
 void BranchLanes::advance(double last_depth_m, double depth_m, double step_s, PartMemory& memory) const noexcept {
-  call<advance_groups>(groups_.data(), groups_.size(), slows_, last_depth_m, depth_m, step_s, &memory);
+  call<advance_groups>(groups_.data(), groups_.size(), last_depth_m, depth_m, step_s, memory.value, memory.drive_N,
+                       memory.slowed, memory.kept);
 }
 
 std::size_t BristleLanes::add(const DriveCurve& drive, double threshold_m, double creep_time_s) {

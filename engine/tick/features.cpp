@@ -105,29 +105,18 @@ void FeaturePlan::update(FeatureState& state, const ToolSample& sample, const Mo
   if (!state.started) state = {};
   state.vector.in_contact = in_contact(sample, surface_position_m_);
   const double step_s = state.started ? std::max(0.0, sample.time_s - state.time_s) : 0.0;
-  branches_.advance(state.depth_m, depth_m, step_s, state.memory);
-  V4 bristle_N[kMaxLaneGroups];
-  const std::size_t first_bristles = branches_.groups();
-  bristles_.advance(state.depth_m, depth_m, step_s, state.memory.value + first_bristles, bristle_N + first_bristles);
-  for (std::size_t i = 0; i < specs_.size(); ++i) {
-    const FeatureSpec& spec = specs_[i];
+  PartMemory& memory = state.memory;
+  const std::size_t branches = branches_.groups();
+  // The bristles first: their roots and quotients take long, and the branches do not wait for them.
+  bristles_.advance(state.depth_m, depth_m, step_s, memory.value + branches, memory.drive_N + branches);
+  branches_.advance(state.depth_m, depth_m, step_s, memory);
+  const std::size_t features = specs_.size(), branch_lanes = kLanes * branches;
+  for (std::size_t i = 0; i < features; ++i) {
     double& value = state.vector.values[i];
-    switch (spec.kind) {
-      case FeatureKind::depth:
-        value = present_m;
-        break;
-      case FeatureKind::velocity:
-        value = depth_m > 0.0 ? motion.velocity_m_per_s : 0.0;
-        break;
-      case FeatureKind::lowpass_velocity:
-      case FeatureKind::maxwell_spectrum:
-        value = sum_of_lanes(state.memory.value, first_lane_[i], lanes_[i]);
-        break;
-      case FeatureKind::stops:
-      case FeatureKind::creep:
-        value = sum_of_lanes(bristle_N, first_lane_[i], lanes_[i]);
-        break;
-    }
+    if (lanes_[i] > 0)
+      value = sum_of_lanes(first_lane_[i] < branch_lanes ? memory.value : memory.drive_N, first_lane_[i], lanes_[i]);
+    else
+      value = specs_[i].kind == FeatureKind::depth ? present_m : depth_m > 0.0 ? motion.velocity_m_per_s : 0.0;
   }
   state.started = true;
   state.time_s = sample.time_s;

@@ -48,10 +48,9 @@ inline constexpr std::size_t kDriveCoefficients = 4;
 template <typename Number, typename Curve>
 [[gnu::always_inline]] inline void evaluate_curve(Number& value, const Curve& curve, double depth_m) noexcept {
   const Number u = depth_m * curve.per_reference_m();
-  const Number inside = u > 1.0 ? Number{} + 1.0 : u;
-  Number sum{};
-  for (std::size_t k = kDriveCoefficients; k-- > 0;) sum = (sum + curve.coefficient_N[k]) * inside;
-  value = sum;
+  const Number inside = u < 1.0 ? u : Number{} + 1.0;
+  value = curve.coefficient_N[kDriveCoefficients - 1] * inside;
+  for (std::size_t k = kDriveCoefficients - 1; k-- > 0;) value = (value + curve.coefficient_N[k]) * inside;
   if (depth_m > curve.least_reference_m()) [[unlikely]] {
     Number slope{};  // dg/du at u = 1
     for (std::size_t k = kDriveCoefficients; k-- > 0;) slope += static_cast<double>(k + 1) * curve.coefficient_N[k];
@@ -118,11 +117,12 @@ struct alignas(sizeof(V4)) CurveLanes {
   double least_reference_m() const noexcept { return least_m; }
 };
 
-// The exponential of a multiple of 1/128 for each lane, kept from step to step: the argument seldom moves to another
-// multiple, and a short series leads from one to it. Results do not depend on what was kept.
-struct alignas(sizeof(V4)) KeptExponential {
-  V4 at{};
-  V4 value{1.0, 1.0, 1.0, 1.0};
+// The exponential of a multiple of 1/32, kept from step to step: the argument seldom moves to another multiple, and a
+// short series leads from one to it. Results do not depend on what was kept.
+template <typename Number>
+struct alignas(sizeof(Number)) KeptExponential {
+  Number at{};
+  Number value = Number{} + 1.0;
 };
 
 // The largest number of groups of four for the branches or bristles of a filter: 8 features of 8 parts.
@@ -130,15 +130,17 @@ inline constexpr std::size_t kMaxLaneGroups = 16;
 
 // The state of the parts of a filter: the groups of branches, then those of bristles.
 struct alignas(sizeof(V4)) PartMemory {
-  V4 value[kMaxLaneGroups];    // the force z of a branch, N; the deflection s or q of a bristle, m
-  V4 drive_N[kMaxLaneGroups];  // g(d) of a branch at the same time
-  KeptExponential slowed[kMaxLaneGroups], kept[kMaxLaneGroups];  // of a step of the branches
+  V4 value[kMaxLaneGroups];                        // the force z of a branch, N; the deflection s or q of a bristle, m
+  V4 drive_N[kMaxLaneGroups];                      // g(d) of a branch at the same time; the force of a bristle
+  KeptExponential<double> slowed[kMaxLaneGroups];  // of a step of the branches
+  KeptExponential<V4> kept[kMaxLaneGroups];
 };
 
 // The sum of `count` lanes from index `first`.
 inline double sum_of_lanes(const V4* value, std::size_t first, std::size_t count) noexcept {
+  const double* const lane = reinterpret_cast<const double*>(value) + first;
   double sum = 0.0;
-  for (std::size_t i = first; i < first + count; ++i) sum += reinterpret_cast<const double*>(value)[i];
+  for (std::size_t i = 0; i < count; ++i) sum += lane[i];
   return sum;
 }
 
@@ -147,8 +149,10 @@ class BranchLanes {
   struct alignas(sizeof(V4)) Group {
     CurveLanes drive;
     V4 relaxation_time_s{1.0, 1.0, 1.0, 1.0};
-    V4 slowing{};  // exponents of the growth of these times with depth
-    V4 per_slowing_m{1.0, 1.0, 1.0, 1.0};
+    V4 rate_per_s{1.0, 1.0, 1.0, 1.0};
+    // An exponent of these rates that grows with depth; that of the group before unless `slows`.
+    double per_slowing = 0.0, per_slowing_m = 1.0;
+    bool slows = false;
   };
   // Returns the index of the branch among the lanes.
   std::size_t add(const DriveCurve& drive, double relaxation_time_s, double slowing = 0.0,
@@ -161,7 +165,6 @@ class BranchLanes {
  private:
   std::vector<Group> groups_;
   std::size_t count_ = 0;
-  bool slows_ = false;  // whether one branch has a slowing
 };
 
 class BristleLanes {

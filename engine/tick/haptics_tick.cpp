@@ -12,7 +12,6 @@
 #include "engine/tick/motion_estimator.h"
 
 namespace palpate {
-
 namespace {
 
 // The largest gap between the recalled motion and the exchange of models (a slow frame of the window, and the model

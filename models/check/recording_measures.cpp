@@ -378,9 +378,11 @@ class LagRegression {
     Eigen::VectorXd scale = scale_;
     Eigen::VectorXd predicted_N;
     for (int pass = 0; pass < kPasses; ++pass) {
-      const Design scaled = scale.asDiagonal() * design;
-      const Eigen::MatrixXd gram = scaled.transpose() * scaled;
-      predicted_N = design * solve_non_negative(gram, scaled.transpose() * scale.cwiseProduct(force_N_));
+      const Eigen::MatrixXd scaled = (scale.asDiagonal() * design).transpose();  // one column a row
+      Eigen::MatrixXd gram(kColumns, kColumns);
+      gram_of_transpose(scaled, gram);
+      gram.triangularView<Eigen::StrictlyUpper>() = gram.transpose();
+      predicted_N = design * solve_non_negative(gram, scaled * scale.cwiseProduct(force_N_));
       for (Eigen::Index i = 0; i < scale.size(); ++i) {
         // An idle row counts a hundredth: without any the next fit would be free there.
         const double idle = is_idle(i, predicted_N(i)) ? kIdleScale : 1.0;

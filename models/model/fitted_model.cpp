@@ -130,7 +130,7 @@ DomainCover make_cover(const Eigen::MatrixXd& sites) {
   return cover;
 }
 
-NearestDistance::NearestDistance(const Eigen::MatrixXd& points) : dimension_(static_cast<std::size_t>(points.rows())) {
+NearestDistance::NearestDistance(const Eigen::MatrixXd& points) {
   std::vector<Eigen::Index> order(static_cast<std::size_t>(points.cols()));
   std::iota(order.begin(), order.end(), Eigen::Index{0});
   sort_to_cells(points, order);
@@ -152,19 +152,14 @@ NearestDistance::NearestDistance(const Eigen::MatrixXd& points) : dimension_(sta
 }
 
 double NearestDistance::squared(const double* x, float enough) const noexcept {
-  std::array<float, kMaxFeatures> query;
-  bool in_range = true;
-  for (std::size_t k = 0; k < dimension_; ++k) {
-    in_range = in_range && simd::in_nearest_range(x[k]);
-    query[k] = simd::nearest_float(x[k]);
-  }
-  if (!in_range) return std::numeric_limits<double>::infinity();
   const simd::Cells cells{points_.data(), low_.data(), high_.data(), static_cast<std::size_t>(low_.rows())};
   const std::uint32_t last = last_cell_.load(std::memory_order_relaxed);
   std::uint32_t cell = last;
-  const float squared = nearest_(cells, query.data(), enough, cell);
+  const float squared = nearest_(cells, x, enough, cell);
   if (cell != last) last_cell_.store(cell, std::memory_order_relaxed);
-  return squared <= enough ? 0.0 : static_cast<double>(squared);
+  if (squared <= enough) return 0.0;
+  return squared < std::numeric_limits<float>::max() ? static_cast<double>(squared)
+                                                     : std::numeric_limits<double>::infinity();
 }
 
 DomainGuard::DomainGuard(const DomainCover& cover)
@@ -260,9 +255,11 @@ double FittedModel::force(const double* features) const noexcept {
   double force_N = data_.trend.at(features, trend_inputs_);
   if (data_.correction) {
     const std::array<double, kMaxFeatures> u = normalised(features);
-    const double correction_N = data_.correction->evaluate(u.data());
     const double trust = trusts_everywhere_ ? 1.0 : guard_.trust(u.data());
-    if (trust > 0.0) force_N += trust * std::clamp(correction_N, -data_.correction_limit_N, data_.correction_limit_N);
+    if (trust > 0.0) {
+      const double correction_N = data_.correction->evaluate(u.data());
+      force_N += trust * std::clamp(correction_N, -data_.correction_limit_N, data_.correction_limit_N);
+    }
   }
   // The comparisons are false for NaN, so that the result is always a finite force.
   if (!(force_N > 0.0)) force_N = force_N < 0.0 ? std::max(force_N, data_.lowest_force_N) : 0.0;

@@ -20,11 +20,15 @@ namespace palpate::simd {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-// A point with every coordinate in all lanes.
+// A point with every coordinate in all lanes; those below `tiny` are 0. Each is loaded by itself, because a load of
+// several that were just stored one by one stalls.
 template <int kDimension, typename D>
 struct Broadcast {
-  HWY_INLINE Broadcast(D d, const hn::TFromD<D>* x) {
-    for (int k = 0; k < kDimension; ++k) coordinate[k] = hn::Set(d, x[k]);
+  HWY_INLINE Broadcast(D d, const double* x, hn::TFromD<D> tiny) {
+    for (int k = 0; k < kDimension; ++k) {
+      const hn::Vec<D> all = hn::Set(d, static_cast<hn::TFromD<D>>(x[k]));
+      coordinate[k] = hn::IfThenZeroElse(hn::Lt(hn::Abs(all), hn::Set(d, tiny)), all);
+    }
   }
   hn::Vec<D> coordinate[kDimension];
 };
@@ -91,9 +95,9 @@ template <KernelKind kKind, int kDimension>
 double evaluate(const Points& points, const double* weights, const double* tail, const double* query_point) noexcept {
   const Doubles d;
   const size_t lanes = hn::Lanes(d);
+  const Broadcast<kDimension, Doubles> query(d, query_point, kTiny);
   double x[kDimension];
-  for (int k = 0; k < kDimension; ++k) x[k] = without_denormals(query_point[k]);
-  const Broadcast<kDimension, Doubles> query(d, x);
+  for (int k = 0; k < kDimension; ++k) x[k] = hn::GetLane(query.coordinate[k]);
   const double tail_part = tail_value(tail, tail_degree(kKind), kDimension, x);
   Vector sum = hn::IfThenElseZero(hn::FirstN(d, 1), hn::Set(d, tail_part));
   Vector more = hn::Zero(d);
@@ -112,7 +116,7 @@ template <KernelKind kKind, int kDimension>
 void column(const Points& points, size_t count, const double* centre, double* out) noexcept {
   const Doubles d;
   const size_t lanes = hn::Lanes(d);
-  const Broadcast<kDimension, Doubles> query(d, centre);
+  const Broadcast<kDimension, Doubles> query(d, centre, kTiny);
   size_t i = 0;
   for (; i + lanes <= count; i += lanes) hn::StoreU(kernel_at<kKind, kDimension>(points, i, query), d, out + i);
   if (i == count) return;
@@ -148,9 +152,9 @@ HWY_INLINE hn::Vec<Floats> squared_to_boxes(const Cells& cells, size_t first, co
 }
 
 template <int kDimension>
-float nearest(const Cells& cells, const float* query, float enough, uint32_t& cell) noexcept {
+float nearest(const Cells& cells, const double* query_point, float enough, uint32_t& cell) noexcept {
   const Floats d;
-  const Broadcast<kDimension, Floats> x(d, query);
+  const Broadcast<kDimension, Floats> x(d, query_point, kSmallestFloat);
   float smallest = nearest_of_cell<kDimension>(cells.points + cell * kDimension * kCellPoints, x);
   const uint32_t last = cell;
   for (size_t first = 0; first < cells.padded && !(smallest <= enough); first += hn::Lanes(d)) {

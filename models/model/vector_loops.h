@@ -3,6 +3,7 @@
 // coordinates[k * stride + i]. Loads are fast because CMakeLists.txt lets Eigen align to 64 bytes.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -23,7 +24,7 @@ inline constexpr std::size_t kSimdPad = 8;
 
 // Numbers below this count as 0, so that the product of two others is not denormal.
 inline constexpr double kTiny = 1e-100;
-inline double without_denormals(double value) noexcept { return value < kTiny && value > -kTiny ? 0.0 : value; }
+inline double without_denormals(double value) noexcept { return std::abs(value) < kTiny ? 0.0 : value; }
 
 struct Points {
   const double* coordinates = nullptr;
@@ -41,10 +42,8 @@ inline constexpr std::size_t kSimdPadFloat = 16;
 // distance is not denormal.
 inline constexpr float kSmallestFloat = 1e-11F;
 inline float nearest_float(double value) noexcept {
-  return value < kSmallestFloat && value > -kSmallestFloat ? 0.0F : static_cast<float>(value);
+  return std::abs(value) < kSmallestFloat ? 0.0F : static_cast<float>(value);
 }
-// Whether the square of a value fits a float; false for NaN.
-inline bool in_nearest_range(double value) noexcept { return value < 1e19 && value > -1e19; }
 
 // Points in cells of kCellPoints, each with the box of its points.
 inline constexpr std::size_t kCellPoints = 32;
@@ -64,9 +63,9 @@ struct Loops {
   double (*evaluate)(const Points& points, const double* weights, const double* tail, const double* x) noexcept;
   // out[i] = phi(|point_i - centre|) for i < count.
   void (*column)(const Points& points, std::size_t count, const double* centre, double* out) noexcept;
-  // The smallest |x - point|^2, or any one that is at most `enough`. Examines the points of `cell` first, then those of
-  // each cell whose box is nearer than the nearest point so far; `cell` receives the cell of the result.
-  float (*nearest)(const Cells& cells, const float* x, float enough, std::uint32_t& cell) noexcept;
+  // The smallest |x - point|^2, or any one that is at most `enough`; not finite if x is not. Examines `cell` first,
+  // then each cell whose box is nearer than the nearest point so far; `cell` receives the cell of the result.
+  float (*nearest)(const Cells& cells, const double* x, float enough, std::uint32_t& cell) noexcept;
 };
 // On the selected instruction set. `dimension`: 1 to 8.
 Loops loops(int dimension, KernelKind kernel = KernelKind::cubic);

@@ -31,9 +31,8 @@ namespace palpate {
 // The candidate features of a trend, the columns of its regression, and the trend made from the weights.
 //
 // A row holds the basis functions of the trend at one sample in contact, with u = depth / reference depth:
-//   depth             int_0^u of the quadratic B-splines (models/model/fitted_model.h): the elastic response; and -1
-//   where
-//                     a material without free air pulls (Samples::surface_outside)
+//   depth             int_0^u of the quadratic B-splines (models/model/fitted_model.h): the elastic response; and
+//                     -1 where a material without free air pulls (Samples::surface_outside)
 //   velocity          v B_k,2(min(u, 1)), k = 0..2, then the same with v / (1 + |v| / v_0): the viscosity
 //   maxwell_spectrum  for each relaxation time a branch driven by int_0^u B_k,2, k = 0..2
 //   stops             for each threshold r, s / r times 1 - (1 - u)^4, u and u^2
