@@ -120,6 +120,15 @@ bool numbers_columns(const Fields& fields) {
          std::ranges::all_of(fields, [&](auto field) { return field == std::to_string(number++); });
 }
 
+// Whether the row after line `i` has decimals.
+bool decimals_follow(const std::vector<std::string_view>& lines, const TableLayout& layout, std::size_t i) {
+  Fields fields;
+  while (++i < lines.size() && !is_row(layout, lines[i], fields)) {
+  }
+  return i < lines.size() &&
+         std::ranges::any_of(fields, [&](auto field) { return field.find(layout.decimal) != field.npos; });
+}
+
 enum class Kind { text, row, other };  // other: numbers that are no row of this table
 
 // Whether most rows begin with a word.
@@ -153,7 +162,8 @@ void find_blocks(const std::vector<std::string_view>& lines, std::uint64_t most_
     const bool word = !fields.empty() && count_fields({fields.front()}, layout.decimal).words > 0;
     Kind kind = Kind::text;
     // A row without any value does not begin a table, and one of the numbers of the columns (1, 2, 3) is no row.
-    if (row && (count.numbers > 0 || !begins)) kind = begins && numbers_columns(fields) ? Kind::other : Kind::row;
+    if (row && (count.numbers > 0 || !begins))
+      kind = begins && numbers_columns(fields) && decimals_follow(lines, layout, i) ? Kind::other : Kind::row;
     if (!row && (layout.first_is_word || !word) && (count.is_row() || count.is_number())) kind = Kind::other;
     if (runs.empty() || runs.back().kind != kind) runs.push_back({kind, {i, i, 0, width}});
     Run& run = runs.back();
