@@ -403,7 +403,8 @@ def front_page(options, folder, parts, kinds, results):
     answer = json.loads((report / "report.json").read_text())["timings"]["answer"]
     shutil.copyfile(report / "figures" / "speed_error.png", ROOT / FIGURE)
     short = [one.split("; median width")[0].rstrip(".") + "." for one in sentences]  # the phases are in RESULTS.md
-    wrapped = [*textwrap.wrap(" ".join([*short, f"The report on the virtual {SHOWN} block: {answer}"]), 118), ""]
+    wrapped = [line for one in [*short, f"The report on the virtual {SHOWN} block: {answer}"]
+               for line in textwrap.wrap(one, 118, initial_indent="- ", subsequent_indent="  ")] + [""]
     block = "\n".join([*summary, "", *wrapped,
                        f"![Time of a whole tick against error on the virtual {SHOWN} block: the methods of 2009 hollow, this program filled]({FIGURE})"])
     readme = ROOT / "README.md"
