@@ -130,7 +130,7 @@ DomainCover make_cover(const Eigen::MatrixXd& sites) {
   return cover;
 }
 
-NearestDistance::NearestDistance(const Eigen::MatrixXd& points) {
+NearestDistance::NearestDistance(const Eigen::MatrixXd& points) : dimension_(static_cast<std::size_t>(points.rows())) {
   std::vector<Eigen::Index> order(static_cast<std::size_t>(points.cols()));
   std::iota(order.begin(), order.end(), Eigen::Index{0});
   sort_to_cells(points, order);
@@ -152,14 +152,15 @@ NearestDistance::NearestDistance(const Eigen::MatrixXd& points) {
 }
 
 double NearestDistance::squared(const double* x, float enough) const noexcept {
+  // The loops find no cell where no distance is a number.
+  for (std::size_t k = 0; k < dimension_; ++k)
+    if (!(std::abs(x[k]) < 1e19)) return std::numeric_limits<double>::infinity();
   const simd::Cells cells{points_.data(), low_.data(), high_.data(), static_cast<std::size_t>(low_.rows())};
   const std::uint32_t last = last_cell_.load(std::memory_order_relaxed);
   std::uint32_t cell = last;
   const float squared = nearest_(cells, x, enough, cell);
   if (cell != last) last_cell_.store(cell, std::memory_order_relaxed);
-  if (squared <= enough) return 0.0;
-  return squared < std::numeric_limits<float>::max() ? static_cast<double>(squared)
-                                                     : std::numeric_limits<double>::infinity();
+  return squared <= enough ? 0.0 : static_cast<double>(squared);
 }
 
 DomainGuard::DomainGuard(const DomainCover& cover)

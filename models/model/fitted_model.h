@@ -127,11 +127,12 @@ class NearestDistance {
   // `points`: d x N, d from 1 to kMaxFeatures, N >= 1.
   explicit NearestDistance(const Eigen::MatrixXd& points);
 
-  // min_i |x - point_i|^2, or 0 if that is at most `enough`; infinite when x is not finite or a square of it does not
-  // fit a float. O(N) at worst.
+  // min_i |x - point_i|^2, or 0 if that is at most `enough`; infinite when x is not finite or has a coordinate beyond
+  // 1e19. O(N) at worst.
   double squared(const double* x, float enough = -1.0F) const noexcept;
 
  private:
+  std::size_t dimension_;
   Eigen::MatrixXf points_, low_, high_;  // of simd::Cells
   decltype(simd::Loops::nearest) nearest_ = nullptr;
   mutable std::atomic<std::uint32_t> last_cell_{0};  // a hint
