@@ -152,7 +152,7 @@ NearestDistance::NearestDistance(const Eigen::MatrixXd& points) : dimension_(sta
 }
 
 double NearestDistance::squared(const double* x, float enough) const noexcept {
-  // The loops find no cell where no distance is a number.
+  // Beyond this a squared distance is no finite float, and no cell would be the nearest.
   for (std::size_t k = 0; k < dimension_; ++k)
     if (!(std::abs(x[k]) < 1e19)) return std::numeric_limits<double>::infinity();
   const simd::Cells cells{points_.data(), low_.data(), high_.data(), static_cast<std::size_t>(low_.rows())};

@@ -63,8 +63,8 @@ struct Loops {
   double (*evaluate)(const Points& points, const double* weights, const double* tail, const double* x) noexcept;
   // out[i] = phi(|point_i - centre|) for i < count.
   void (*column)(const Points& points, std::size_t count, const double* centre, double* out) noexcept;
-  // The smallest |x - point|^2, or any one that is at most `enough`; not finite if x is not. Examines `cell` first,
-  // then each cell whose box is nearer than the nearest point so far; `cell` receives the cell of the result.
+  // The smallest |x - point|^2, or any one that is at most `enough`, for x finite and below 1e19. Examines `cell`
+  // first, then each cell whose box is nearer than the nearest point so far; `cell` receives the cell of the result.
   float (*nearest)(const Cells& cells, const double* x, float enough, std::uint32_t& cell) noexcept;
 };
 // On the selected instruction set. `dimension`: 1 to 8.

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <filesystem>
 #include <functional>
+#include <numbers>
 #include <utility>
 
 #include "engine/base/random_stream.h"
@@ -334,6 +335,36 @@ TEST(ForceLag, FindsALateForce) {
     const OffsetEstimate found = lag_of(material, late_s);
     EXPECT_TRUE(found.identified) << material;
     EXPECT_NEAR(found.at, late_s, 2e-3) << material;
+  }
+}
+
+// Presses whose depth jumps fit no law: the blocks disagree on the lag by some milliseconds, but not that there is one.
+// A late force in free air is no drift.
+TEST(ForceLag, IsNamedWhereThePressesJump) {
+  const auto check_of = [](double late_s) {
+    Recording recording;
+    double slow_m = 0.0;
+    for (int i = 0; i < 15000; ++i) {
+      const double time_s = 0.002 * i, rates_Hz[] = {0.25, 0.6, 1.1, 2.0};
+      const auto depth_m = [&](double at_s) {
+        const int part = std::clamp(static_cast<int>(at_s / 7.5), 0, 3);
+        const double turn = 2.0 * std::numbers::pi * rates_Hz[part] * (at_s - 7.5 * part);
+        return -1e-3 + 4e-3 * (1.0 - std::cos(turn)) * (0.6 + 0.4 * std::sin(0.37 * at_s));
+      };
+      const double late_m = time_s < late_s ? 0.0 : std::max(0.0, depth_m(time_s - late_s));
+      slow_m += 0.002 / 0.4 * (late_m - slow_m);
+      recording.rows.push_back({.time_s = time_s, .position_m = depth_m(time_s), .force_N = 0.0});
+      const double noise_N = 0.004 * std::sin(1.7 * i * i);
+      recording.rows.back().force_N = 900.0 * late_m + 4e4 * late_m * late_m + 500.0 * (late_m - slow_m) + noise_N;
+    }
+    return checked(recording, CheckRequest{});
+  };
+  EXPECT_EQ(find(check_of(0.0), "lag"), nullptr);
+  for (const double late_s : {0.03, 0.3}) {
+    const RecordingCheck check = check_of(late_s);
+    ASSERT_NE(find(check, "lag"), nullptr) << all_of(check);
+    EXPECT_NEAR(find(check, "lag")->value, late_s, 6e-3) << late_s;
+    EXPECT_EQ(find(check, "force_zero_drift"), nullptr) << all_of(check);
   }
 }
 
