@@ -178,9 +178,6 @@ Status run_fit(const FitArguments& arguments) {
 // A model for each recording of a folder.
 Status fit_each(const FitArguments& arguments) {
   const std::string& folder = arguments.recordings.front();
-  std::string command = "palpate fit --recording " + shell_word(folder);
-  for (const OptionText& option : arguments.options) command += " --" + option.name + " " + shell_word(option.value);
-  command += " --scene " + shell_word(arguments.scene) + " --out " + shell_word(arguments.out);
   const auto job = [&](const std::string& recording, const std::string& result) {
     FitArguments one = arguments;
     one.recordings = {recording};
@@ -197,8 +194,8 @@ Status fit_each(const FitArguments& arguments) {
             {"contact_samples", provenance.contact_samples},
             {"training_within_jnd", provenance.training_within_jnd}};
   };
-  return run_folder({"fitting " + plan_name(arguments.plan), command, folder, arguments.out, ".json", "models",
-                     arguments.force, job, row});
+  return run_folder(
+      {"fitting " + plan_name(arguments.plan), folder, arguments.out, ".json", "models", arguments.force, job, row});
 }
 
 // With one folder and `--out FOLDER` each recording gets its own model; else all recordings are one training set.

@@ -327,7 +327,7 @@ nlohmann::ordered_json hard_json(const std::vector<HardRow>& rows) {
   return {{"cells", table_json(cells_table(rows))}};
 }
 
-Status write_hard_page(const std::vector<HardRow>& rows, const HardPage& page, const FitControl& control) {
+Status write_hard_page(const std::vector<HardRow>& rows, const PageRequest& page, const FitControl& control) {
   auto folder = ReportFolder::create(page.out, page.force);
   if (!folder) return folder.error();
   std::vector<Table> tables;
@@ -336,12 +336,9 @@ Status write_hard_page(const std::vector<HardRow>& rows, const HardPage& page, c
   tables.push_back(cells_table(rows));
   nlohmann::ordered_json report{{"format", "palpate-hard"}, {"version", 1}, {"answer", hard_answer(rows)}};
   report.update(hard_json(rows));
-  return write_report(*folder, "hard.html", tables, {},
-                      {{"answer", escape_html(hard_answer(rows))},
-                       {"missed", list_html(missed_cells(rows))},
-                       {"jnd", escape_html(kJndDefinition)},
-                       {"origin", escape_html(page.origin)}},
-                      report, control);
+  return write_report(*folder, page, "hard.html", tables, {},
+                      {{"answer", escape_html(hard_answer(rows))}, {"missed", list_html(missed_cells(rows))}}, report,
+                      control);
 }
 
 }  // namespace palpate

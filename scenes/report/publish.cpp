@@ -293,9 +293,10 @@ Status ReportFolder::commit() {
   return {};
 }
 
-Status write_report(ReportFolder& folder, const std::string& page_template, const std::vector<Table>& tables,
-                    const std::vector<Figure>& figures, std::map<std::string, std::string> parts,
-                    const nlohmann::ordered_json& report, const FitControl& control) {
+Status write_report(ReportFolder& folder, const PageRequest& request, const std::string& page_template,
+                    const std::vector<Table>& tables, const std::vector<Figure>& figures,
+                    std::map<std::string, std::string> parts, const nlohmann::ordered_json& report,
+                    const FitControl& control) {
   for (const Table& table : tables) {
     if (const Status status = folder.write("tables/" + table.name + ".csv", table_csv(table)); !status) return status;
     parts[table.name] = table.rows.empty() ? "" : table_html(table);
@@ -317,6 +318,8 @@ Status write_report(ReportFolder& folder, const std::string& page_template, cons
   const auto style = read_template("style.css");
   if (!style) return style.error();
   parts["style"] = *style;
+  parts["jnd"] = escape_html(kJndDefinition);
+  parts["origin"] = escape_html(request.command + " · " + request.version + parts["origin"]);
   const auto page = fill_page(page_template, parts);
   if (!page) return page.error();
   // Names of recordings may be invalid UTF-8; such bytes are replaced.

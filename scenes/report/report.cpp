@@ -191,7 +191,7 @@ OrderedJson report_json(const ReportData& data, const ReportRequest& request, co
             {"as_good", as_good},
             {"tables", times}}},
           {"program", {{"version", request.version}, {"compiler", kCompiler}}},
-          {"command_line", request.command_line}};
+          {"command_line", request.command}};
 }
 
 // Describes methods whose 99 % error is larger with more centres, by a difference that counts.
@@ -341,21 +341,20 @@ Result<ReportAnswer> make_report(const ReportRequest& request, const FitControl&
   const std::string machine =
       processor() + ", " + std::to_string(std::max(1U, std::thread::hardware_concurrency())) + " cores";
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  const std::string origin = request.command_line + " · " + request.version + ", " + kCompiler + " · " + machine +
-                             " · " + three_digits(seconds) + " s";
   const OrderedJson json = report_json(*data, request, tables, figures, machine, seconds);
   std::vector<std::string> tests;
   for (const TestedRecording& one : data->tested) tests.push_back(one.recording->recording.name);
   if (const Status status = folder->write("model.json", *model); !status) return status.error();
-  const Status written = write_report(*folder, "page.html", tables, figures,
-                                      {{"title", escape_html(joined(tests))},
-                                       {"answer", escape_html(words)},
-                                       {"headline", table_html(headline_table(*data))},
-                                       {"curves", curves_html(curves_json(*data))},
-                                       {"notes", notes_html(*data, request)},
-                                       {"learnt", learnt_html(*data)},
-                                       {"origin", escape_html(origin)}},
-                                      json, control);
+  const Status written =
+      write_report(*folder, request, "page.html", tables, figures,
+                   {{"title", escape_html(joined(tests))},
+                    {"answer", escape_html(words)},
+                    {"headline", table_html(headline_table(*data))},
+                    {"curves", curves_html(curves_json(*data))},
+                    {"notes", notes_html(*data, request)},
+                    {"learnt", learnt_html(*data)},
+                    {"origin", std::string(", ") + kCompiler + " · " + machine + " · " + three_digits(seconds) + " s"}},
+                   json, control);
   if (!written) return written.error();
   return ReportAnswer{table_text(headline_table(*data)), words, details(*data, request)};
 }

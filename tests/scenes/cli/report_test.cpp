@@ -152,7 +152,7 @@ TEST_F(ReportVerb, ThePagesAreRightInABrowser) {
   one.why = "what is hard";
   std::vector<HardRow> rows = {{one, std::vector<HardCell>(hard_methods().size())}};
   rows.front().cells.back().breaks = kBreaksStep;
-  ASSERT_TRUE(write_hard_page(rows, {folder.file("hard"), false, "palpate hard"}).ok());
+  ASSERT_TRUE(write_hard_page(rows, {folder.file("hard"), false, "palpate hard", "palpate"}).ok());
   test::must_run({"paper", "--quick", "--out", folder.file("paper")});
   fs::copy(out(), folder.file("report"), fs::copy_options::recursive);
   std::string frames =
