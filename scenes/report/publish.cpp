@@ -319,6 +319,7 @@ Status write_report(ReportFolder& folder, const PageRequest& request, const std:
   if (!style) return style.error();
   parts["style"] = *style;
   parts["jnd"] = escape_html(kJndDefinition);
+  parts["rule"] = escape_html(kBestRule);
   parts["origin"] = escape_html(request.command + " · " + request.version + parts["origin"]);
   const auto page = fill_page(page_template, parts);
   if (!page) return page.error();
