@@ -211,6 +211,12 @@ std::string table_html(const Table& table) {
   return html + "</tbody></table></div>\n";
 }
 
+std::string list_html(const std::vector<std::string>& lines) {
+  std::string html;
+  for (const std::string& line : lines) html += "<li>" + escape_html(line) + "</li>\n";
+  return html;
+}
+
 std::string inline_svg(const std::string& svg, const std::string& name, const std::string& title) {
   const std::size_t open = svg.find("<svg");
   if (open == std::string::npos) return {};

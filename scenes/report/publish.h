@@ -74,6 +74,9 @@ std::vector<std::vector<std::string>> table_text(const Table& table);
 // <div><table>...</table></div> with all text escaped. A cell that begins with ✗ is red.
 std::string table_html(const Table& table);
 
+// <li>...</li> for each line.
+std::string list_html(const std::vector<std::string>& lines);
+
 // Converts an SVG drawing of gnuplot for a page. Removes the prologue and the fixed size, prefixes ids with `name`, and
 // replaces the neutral colours of assets/figures/style.gp by the page's CSS variables (--ink, --muted, --grid, --band,
 // --paper), so that the drawing follows the light or dark theme. Returns an empty string where `svg` is no SVG.
