@@ -137,7 +137,8 @@ std::vector<std::string> details(const ReportData& data, const ReportRequest& re
                     ".");
   for (std::size_t i = 1; i < data.models.size(); ++i) {
     const ModelResult& one = data.models[i];
-    if (*one.plan != ModelPlan{} || one.selects_size || family_name(*use.plan) == family_name(*one.plan)) continue;
+    const std::string family = family_name(*one.plan);
+    if (family != family_name(ModelPlan{}) || one.selects_size || family == family_name(*use.plan)) continue;
     lines.push_back("palpate fit without --method makes " + compared(one) +
                     (choice.as_good[i] ? "; it is as good, and " + use.name + " is faster." : "; it is worse here."));
   }
