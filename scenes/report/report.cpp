@@ -132,7 +132,9 @@ std::vector<std::string> details(const ReportData& data, const ReportRequest& re
                     share_text(use.untared.within_jnd) + " within one JND.");
   if (choice.best != choice.recommended)
     lines.push_back("As good, but slower: " + compared(data.models[choice.best]) + ".");
-  if (choice.fastest_below_jnd && choice.fastest_below_jnd != choice.recommended)
+  // Times that differ by less than a tenth are as fast.
+  if (choice.fastest_below_jnd &&
+      data.models[*choice.fastest_below_jnd].time.tick.median_ns < 0.9 * use.time.tick.median_ns)
     lines.push_back("The fastest whose errors stay below the JND: " + compared(data.models[*choice.fastest_below_jnd]) +
                     ".");
   for (std::size_t i = 1; i < data.models.size(); ++i) {

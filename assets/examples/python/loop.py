@@ -47,7 +47,7 @@ def main(model=None, seconds=5.0):
         force_N = limiter.render(stream, time_s, position_m, time_s - before_s)
         sampled_s[sequence & 0xFFFF], before_s = time_s, time_s
         send(sequence, force_N, 1)
-        if sequence % 500 == 0:
+        if sequence % 600 == 0:
             print("force %.3f N, lag %.1f ms, stiffness share %.2f, flags %d"
                   % (force_N, 1e3 * (time_s - acted_s), limiter.stiffness_share, limiter.flags))
         if time_s > float(seconds):
