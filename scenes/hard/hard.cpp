@@ -333,7 +333,8 @@ Status write_hard_page(const std::vector<HardRow>& rows, const PageRequest& page
   report.update(hard_json(rows));
   return write_report(
       *folder, page, "hard.html", tables, {},
-      {{"answer", escape_html(hard_answer(rows))},
+      {{"title", "Palpate: every method on every hard case"},
+       {"answer", escape_html(hard_answer(rows))},
        {"missed", missed.empty() ? "" : "<h2>Not as expected</h2>\n<ul>\n" + list_html(missed) + "</ul>\n"}},
       report, control);
 }

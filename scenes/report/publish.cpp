@@ -306,6 +306,7 @@ Status write_report(ReportFolder& folder, const PageRequest& request, const std:
   for (const Table& table : tables) {
     if (const Status status = folder.write("tables/" + table.name + ".csv", table_csv(table)); !status) return status;
     parts[table.name] = table.rows.empty() ? "" : table_html(table);
+    parts["tables"] += ", <a href=\"tables/" + table.name + ".csv\">" + table.name + "</a>";
   }
   const std::string place = folder.path_of("figures");
   std::error_code ignored;
@@ -327,7 +328,10 @@ Status write_report(ReportFolder& folder, const PageRequest& request, const std:
   parts["jnd"] = escape_html(kJndDefinition);
   parts["rule"] = escape_html(kBestRule);
   parts["origin"] = escape_html(request.command + " · " + request.version + parts["origin"]);
-  const auto page = fill_page(page_template, parts);
+  const auto body = fill_page(page_template, parts);
+  if (!body) return body.error();
+  parts["body"] = *body;
+  const auto page = fill_page("frame.html", parts);
   if (!page) return page.error();
   // Names of recordings may be invalid UTF-8; such bytes are replaced.
   const std::string json = report.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";

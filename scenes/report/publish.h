@@ -120,11 +120,11 @@ struct Figure {
 };
 
 // Writes tables/NAME.csv, the figures into the subfolder figures, report.json, which marks the folder as a report that
-// may be replaced, and index.html, and commits the folder. index.html is assets/report/TEMPLATE with every {{key}}
-// replaced: by its value in `parts`, by the table or the figure of that name, {{figures}} by all figures, {{style}} by
-// style.css, {{jnd}} by kJndDefinition, {{rule}} by kBestRule, {{origin}} by command, version and what `parts` has of
-// it. Errors: those of ReportFolder and draw_plots; a template is missing or has an unknown key; a file cannot be read
-// or written; interrupted.
+// may be replaced, and index.html, and commits the folder. index.html is assets/report/frame.html around TEMPLATE, with
+// every {{key}} replaced: by its value in `parts`, by the table or the figure of that name, {{figures}} by all figures,
+// {{style}} by style.css, {{jnd}} by kJndDefinition, {{rule}} by kBestRule, {{origin}} by command, version and what
+// `parts` has of it. Errors: those of ReportFolder and draw_plots; a template is missing or has an unknown key; a file
+// cannot be read or written; interrupted.
 Status write_report(ReportFolder& folder, const PageRequest& request, const std::string& page_template,
                     const std::vector<Table>& tables, const std::vector<Figure>& figures,
                     std::map<std::string, std::string> parts, const nlohmann::ordered_json& report,

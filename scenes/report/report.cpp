@@ -330,7 +330,7 @@ Result<ReportAnswer> make_report(const ReportRequest& request, const FitControl&
   if (const Status status = folder->write("model.json", *model); !status) return status.error();
   const Status written =
       write_report(*folder, request, "page.html", tables, figures,
-                   {{"title", escape_html(joined(tests))},
+                   {{"title", "Palpate report: " + escape_html(joined(tests))},
                     {"answer", escape_html(words)},
                     {"headline", table_html(headline_table(*data))},
                     {"curves", curves_html(curves_json(*data))},
