@@ -12,7 +12,8 @@ packages=(g++ cmake ninja-build libeigen3-dev libopenblas-dev liblapacke-dev lib
 # Needed by the tests and benchmarks: a virtual display for the window (xvfb-run needs
 # xauth), a browser for the pages, an emulated HID device, an emulated AVR board with its compiler, and a German
 # locale for number formats.
-test_packages=(libgtest-dev libbenchmark-dev chromium python3 python3-numpy python3-matplotlib locales xvfb xauth xkb-data
+test_packages=(libgtest-dev libbenchmark-dev chromium python3 python3-numpy python3-jsonschema
+  python3-matplotlib locales xvfb xauth xkb-data
   x11-xkb-utils libx11-dev libxrandr-dev libumockdev-dev umockdev
   gcc-avr avr-libc simavr libsimavr-dev)
 # Needed by .ci/run to make empty roots. Its steps install their own packages there.

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Builds and runs Palpate, on a fresh Debian 12 too. With a display: starts the
 # window program with all arguments. Without one: compares the methods of the
-# paper and the best of Palpate on the virtual silicone block, as a table and a
+# paper and the default of Palpate on the virtual silicone block, as a table and a
 # figure of speed against error; with a verb as first argument (`bash scenes/run.sh scenes`), runs `palpate`.
 set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/prepare.sh"

@@ -98,6 +98,8 @@ struct palpate_limiter {
   palpate::SampleRate calls, samples;
   double sample_age_s = std::numeric_limits<double>::infinity();
   palpate::library::StepCheck steps;
+  bool told = false;  // by palpate_limiter_acted, of the sample to come and of the last one
+  double acted_from_s = palpate::library::kNone, acted_before_s = palpate::library::kNone;
   unsigned flags = 0;  // beside those of `limiter`
 };
 
@@ -209,6 +211,16 @@ Result<ForceLimits> force_limits(const palpate_limits& limits) {
   return std::bit_cast<ForceLimits>(limits);  // the same fields in the same order
 }
 
+// Of the force that acted until the sample of this time, as DeviceEndpoint has it. A new command may have replaced the
+// one before just before this sample.
+ForceAge age_at(palpate_limiter& limiter, double time_s) noexcept {
+  constexpr double kLongest_s = 1.0;  // beyond it the times are of another clock
+  const double from_s = std::exchange(limiter.acted_from_s, kNone);
+  const ForceAge age{time_s - from_s, time_s - std::exchange(limiter.acted_before_s, from_s)};
+  return age.least_s >= 0.0 && age.largest_s >= age.least_s && age.largest_s < kLongest_s ? age
+                                                                                          : ForceAge{kNone, kNone};
+}
+
 // The last force of the stream after the stages of LiveTick. `given_s` >= 0: the step that the caller names.
 double render(palpate_limiter& limiter, palpate_stream& stream, double given_s) noexcept {
   const TickSnapshot& tick = stream.tick().snapshot();
@@ -224,7 +236,7 @@ double render(palpate_limiter& limiter, palpate_stream& stream, double given_s) 
   const ForceGuard::Timing timing{step_s, tick_s, limiter.lag_s};
   if (stream.accepted) {
     if (!first && limiter.sample_age_s > 0.0) limiter.samples.add(std::min(limiter.sample_age_s, kPause_s));
-    limiter.guard.acted({}, tick_s);
+    limiter.guard.acted(limiter.told ? age_at(limiter, tick.time_s) : ForceAge{}, tick_s);
     limiter.sample_age_s = 0.0;
   }
   const bool in_contact = stream.tick().features_of(0).in_contact && !std::exchange(stream.restarted, false);
@@ -429,6 +441,12 @@ int palpate_limiter_set_lag(palpate_limiter* limiter, double lag_s) {
   if (limiter == nullptr || !std::isfinite(lag_s) || lag_s < 0.0) return -1;
   limiter->lag_s = lag_s;
   return 0;
+}
+
+void palpate_limiter_acted(palpate_limiter* limiter, double sampled_s) {
+  if (limiter == nullptr) return;
+  limiter->told = true;
+  limiter->acted_from_s = sampled_s;
 }
 
 void palpate_limiter_stop(palpate_limiter* limiter) {

@@ -183,7 +183,7 @@ std::string unknown_option(const CLI::App& app, int argc, char** argv) {
 }
 
 int run_program(int argc, char** argv) {
-  CLI::App app("Palpate: press a recorded block, and see which model differs from it by more than a hand can notice",
+  CLI::App app("Palpate: press a recorded block, and see which model differs from it by more than people notice",
                "palpate-demo");
   app.set_version_flag("--version", "palpate " PALPATE_VERSION);
   app.footer("Example:\n  palpate-demo --train rec.csv --test test.csv");

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "rendering/panels/panel.h"
+#include "scenes/evaluation/model_errors.h"
 #include "scenes/scene/scene.h"
 
 namespace palpate {
@@ -17,9 +18,9 @@ namespace fs = std::filesystem;
 
 constexpr const char* kPictureHelp[] = {
     "The probe presses the same block with several models at once; the sentence at the top says which one to take.",
-    ("JND: the difference of force that people notice in three of four trials; 0.065 N + 6.33 % of the force is the "
-     "line of Hoever & Harders (2009), below their measured points. Grey band: one JND to either side of the "
-     "reference."),
+    kBestRule,
+    kJndDefinition,
+    "Grey band: one JND to either side of the reference.",
     ("Green: the truth, a true or recorded force. Other colours: one for each method; hollow marks: the paper of 2009. "
      "In the cut of a block: the error of this press, from white (0) over yellow to dark red (1 JND), violet with a "
      "ring above; the arrows are the forces of the model and, narrow, of the truth."),

@@ -110,9 +110,8 @@ std::string relaxation_bands(const std::vector<FeatureSpec>& features) {
   return joined(bands);
 }
 
-// `out`: the file that was written.
 void print_fit(const PreparedTraining& prepared, const MethodFit& fit, double seconds, bool accelerometer,
-               const std::string& out) {
+               const FitArguments& arguments) {
   const Provenance& provenance = fit.data.provenance;
   if (!prepared.gains.empty()) {
     print_table(table_text(gains_table(prepared.gains)), true);
@@ -136,11 +135,12 @@ void print_fit(const PreparedTraining& prepared, const MethodFit& fit, double se
     print_line(fit.choices && note == choices_text(*fit.choices, fit.kernel.has_value()) ? "selected" : "note", note);
   print_line("training <= JND", fixed(100.0 * provenance.training_within_jnd, 2) + " %" +
                                     (accelerometer ? " (with the accelerometer)" : " (from positions alone)"));
-  print_line("written", out);
-  print_line("next", with_program_name("palpate replay --recording TEST.csv --model ") + shell_word(out));
-  print_line("best method", "not determined by one fit; " +
-                                with_program_name("palpate report --train TRAINING.csv --test TEST.csv --out DIR") +
-                                " compares all by one rule");
+  print_line("written", arguments.out);
+  print_line("next", with_program_name("palpate replay --recording TEST.csv --model ") + shell_word(arguments.out));
+  std::string train;
+  for (const std::string& one : arguments.recordings) train += " " + shell_word(one);
+  print_line("best method", "not determined without a test; this compares all by one rule: " +
+                                with_program_name("palpate report --train" + train + " --test TEST.csv --out DIR"));
 }
 
 Status run_fit(const FitArguments& arguments) {
@@ -170,7 +170,7 @@ Status run_fit(const FitArguments& arguments) {
   if (arguments.json) {
     print_json(fit_json(*fitted, seconds));
   } else {
-    print_fit(**fits.prepare(arguments.plan, {}), *fitted, seconds, accelerometer, arguments.out);
+    print_fit(**fits.prepare(arguments.plan, {}), *fitted, seconds, accelerometer, arguments);
   }
   return {};
 }
@@ -178,9 +178,6 @@ Status run_fit(const FitArguments& arguments) {
 // A model for each recording of a folder.
 Status fit_each(const FitArguments& arguments) {
   const std::string& folder = arguments.recordings.front();
-  std::string command = "palpate fit --recording " + shell_word(folder);
-  for (const OptionText& option : arguments.options) command += " --" + option.name + " " + shell_word(option.value);
-  command += " --scene " + shell_word(arguments.scene) + " --out " + shell_word(arguments.out);
   const auto job = [&](const std::string& recording, const std::string& result) {
     FitArguments one = arguments;
     one.recordings = {recording};
@@ -197,8 +194,8 @@ Status fit_each(const FitArguments& arguments) {
             {"contact_samples", provenance.contact_samples},
             {"training_within_jnd", provenance.training_within_jnd}};
   };
-  return run_folder({"fitting " + plan_name(arguments.plan), command, folder, arguments.out, ".json", "models",
-                     arguments.force, job, row});
+  return run_folder(
+      {"fitting " + plan_name(arguments.plan), folder, arguments.out, ".json", "models", arguments.force, job, row});
 }
 
 // With one folder and `--out FOLDER` each recording gets its own model; else all recordings are one training set.

@@ -54,7 +54,7 @@ Status enter(const FolderRun& run) {
   std::error_code error;
   if (fs::exists(run.out, error) && !run.force) {
     const auto command = read_whole_file(mark);
-    if (!command || *command != run.command + "\n") {
+    if (!command || *command != kept_command() + "\n") {
       return Error{run.out +
                    " exists, and this command has not made it; name another folder, or replace it with --force"};
     }
@@ -62,7 +62,7 @@ Status enter(const FolderRun& run) {
   }
   fs::create_directories(run.out, error);
   if (error) return Error{"cannot make the folder " + run.out + ": " + error.message()};
-  return write_file_atomically(mark, run.command + "\n", true);
+  return write_file_atomically(mark, kept_command() + "\n", true);
 }
 
 bool is_done(const Job& job) {

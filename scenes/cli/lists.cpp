@@ -44,7 +44,8 @@ Status print_devices() {
   const Result<std::string> assets = find_assets();
   std::vector<std::vector<std::string>> rows = {{"DEVICE", "FORCE", "USABLE", "DESCRIPTION"}};
   for (const DeviceDescription& device : list_devices({.calibrations = calibrations_folder()})) {
-    const std::string& problem = device.problem;
+    // What an error of another verb says of this one is left out here.
+    const std::string problem = device.problem.substr(0, device.problem.find(" (palpate devices"));
     rows.push_back(
         {device.name, device.holder != Holder::none ? "yes" : "no", problem.empty() ? "yes" : "no", device.summary});
     if (!problem.empty()) rows.push_back({"", "", "", problem});

@@ -26,24 +26,6 @@ struct Arguments {
   ReportRequest request;
 };
 
-// The command that makes the same report again.
-std::string command_line(const Arguments& arguments) {
-  std::string text = "palpate report";
-  const auto add = [&](const char* option, const std::vector<std::string>& values) {
-    if (!values.empty()) text += std::string(" ") + option;
-    for (const std::string& value : values) text += " " + shell_word(value);
-  };
-  add("--train", arguments.train);
-  add("--test", arguments.test);
-  if (!arguments.after.empty()) add("--after", {arguments.after});
-  add("--scene", {arguments.scene});
-  if (arguments.request.quick) text += " --quick";
-  if (arguments.budget_percent != Arguments{}.budget_percent)
-    text += " --budget " + general(arguments.budget_percent, 6);
-  add("--out", {arguments.request.out});
-  return text;
-}
-
 // Prints the file that a verb has just written, for --json. Errors: those of read_plain_file.
 Status print_file(const std::string& path) {
   const Result<std::string> text = read_plain_file(path, "the results");
@@ -72,8 +54,6 @@ Status run_report(Arguments arguments) {
   request.scene = *scene;
   request.test_files = arguments.test;
   request.budget_ns = 1e9 * kHapticTick_s * 0.01 * arguments.budget_percent;
-  request.command_line = command_line(arguments);
-  request.version = "palpate " PALPATE_VERSION;
   for (std::size_t i = 0; i < checked->size(); ++i)
     (i < arguments.train.size() ? request.train : request.test).push_back((*checked)[i].prepared);
   const auto answer =
@@ -106,8 +86,8 @@ Status report_each(const Arguments& arguments) {
       cells.emplace_back(model["model"].get<std::string>(), model["within_jnd"]);
     return cells;
   };
-  return run_folder({"reporting", command_line(arguments), arguments.train.front(), arguments.request.out, "",
-                     "reports", arguments.request.force, job, row});
+  return run_folder(
+      {"reporting", arguments.train.front(), arguments.request.out, "", "reports", arguments.request.force, job, row});
 }
 
 // With one folder and no test each recording gets its own report; else the recordings of a folder are one set.
@@ -122,9 +102,7 @@ Status run_report_or_each(Arguments arguments) {
   return run_report(std::move(arguments));
 }
 
-Status run_paper(PaperRequest request, bool json) {
-  request.origin = "palpate paper --out " + shell_word(request.out) + (request.quick ? " --quick" : "") +
-                   " · palpate " PALPATE_VERSION;
+Status run_paper(const PaperRequest& request, bool json) {
   const auto answer =
       with_progress("measuring", [&](const FitControl& control) { return make_paper(request, control); });
   if (!answer) return answer.error();
@@ -132,11 +110,6 @@ Status run_paper(PaperRequest request, bool json) {
   std::printf("%s\nwritten  %s/index.html, with its tables and figures\n", answer->c_str(), request.out.c_str());
   return {};
 }
-
-struct HardOptions {
-  HardPage page;
-  bool json = false;
-};
 
 void print_marks(const std::vector<HardRow>& rows) {
   print_table(table_text(marks_table(rows)), true);
@@ -146,27 +119,34 @@ void print_marks(const std::vector<HardRow>& rows) {
       hard_answer(rows).c_str());
 }
 
-Status run_hard_cases(const HardOptions& options) {
-  if (!options.page.out.empty()) {  // tried before the cases run, which takes half a minute
-    if (const auto trial = ReportFolder::create(options.page.out, options.page.force); !trial) return trial.error();
+Status run_hard_cases(const PageRequest& page, bool json) {
+  if (!page.out.empty()) {  // tried before the cases run, which takes half a minute
+    if (const auto trial = ReportFolder::create(page.out, page.force); !trial) return trial.error();
   }
   const auto rows = with_progress("testing", [](const FitControl& control) { return run_hard(control); });
   if (!rows) return rows.error();
-  if (options.json) {
+  if (json) {
     print_json(hard_json(*rows));
   } else {
     print_marks(*rows);
   }
-  if (!options.page.out.empty()) {
-    if (const Status written = write_hard_page(*rows, options.page); !written) return written;
-    if (!options.json)
-      std::printf("written  %s/index.html, with its tables\n", printable(options.page.out, std::string::npos).c_str());
+  if (!page.out.empty()) {
+    if (const Status written = write_hard_page(*rows, page); !written) return written;
+    if (!json) std::printf("written  %s/index.html, with its tables\n", printable(page.out, std::string::npos).c_str());
   }
   const std::vector<std::string> missed = missed_cells(*rows);
   if (missed.empty()) return {};
   std::string message = std::to_string(missed.size()) + " cells are not as expected";
   for (const std::string& line : missed) message += "\n  " + line;
   return Error{message};
+}
+
+CLI::Option* add_page_options(CLI::App* verb, PageRequest& request, bool& json) {
+  request.version = "palpate " PALPATE_VERSION;
+  verb->parse_complete_callback([&request] { request.command = kept_command(); });
+  verb->add_flag("--json", json, "Print one JSON object, which report.json in the folder has, too");
+  verb->add_flag("--force", request.force, "Replace an earlier page");
+  return verb->add_option("--out", request.out, "Folder to create, with a page of the results")->type_name("DIR");
 }
 
 }  // namespace
@@ -189,38 +169,30 @@ void add_report(CLI::App& app, Verbs& verbs) {
       ->type_name("CSV");
   verb->add_option("--scene", arguments->scene, "Scene that gives the features and the JND line")
       ->capture_default_str();
-  verb->add_option("--out", arguments->request.out, "Folder to create")->required()->type_name("DIR");
+  add_page_options(verb, arguments->request, arguments->json)->required();
   verb->add_option("--budget", arguments->budget_percent,
                    "Longest tick of a model that is recommended, in percent of the period of 1 ms")
       ->check(CLI::Range(1e-6, 100.0))
       ->capture_default_str();
   verb->add_flag("--quick", arguments->request.quick, "Fit the paper's methods and the default only, with 100 centres");
-  verb->add_flag("--json", arguments->json, "Print report.json, which is also in the folder");
-  verb->add_flag("--force", arguments->request.force, "Replace an earlier report");
   verbs.emplace_back(verb, [arguments] { return run_report_or_each(*arguments); });
 }
 
 void add_paper(CLI::App& app, Verbs& verbs) {
   CLI::App* verb = app.add_subcommand("paper", "Repeat the protocol, figures and claims of Hoever & Harders (2009)");
   const auto request = std::make_shared<PaperRequest>();
-  verb->add_option("--out", request->out, "Folder to create")->required()->type_name("DIR");
-  verb->add_flag("--quick", request->quick, "Use a fifth of the recordings and fewer fits");
   const auto json = std::make_shared<bool>(false);
-  verb->add_flag("--json", *json, "Print report.json, which is also in the folder");
-  verb->add_flag("--force", request->force, "Replace an earlier result");
+  add_page_options(verb, *request, *json)->required();
+  verb->add_flag("--quick", request->quick, "Use a fifth of the recordings and fewer fits");
   verbs.emplace_back(verb, [request, json] { return run_paper(*request, *json); });
 }
 
 void add_hard(CLI::App& app, Verbs& verbs) {
   CLI::App* verb = app.add_subcommand("hard", "Run every method on every hard case, and compare with what is expected");
-  const auto options = std::make_shared<HardOptions>();
-  verb->add_option("--out", options->page.out, "Folder to create, with a page of the results")->type_name("DIR");
-  verb->add_flag("--json", options->json, "Print one JSON object");
-  verb->add_flag("--force", options->page.force, "Replace an earlier page");
-  verbs.emplace_back(verb, [options] {
-    options->page.origin = "palpate hard --out " + shell_word(options->page.out) + " · palpate " PALPATE_VERSION;
-    return run_hard_cases(*options);
-  });
+  const auto page = std::make_shared<PageRequest>();
+  const auto json = std::make_shared<bool>(false);
+  add_page_options(verb, *page, *json);
+  verbs.emplace_back(verb, [page, json] { return run_hard_cases(*page, *json); });
 }
 
 }  // namespace palpate::cli

@@ -16,7 +16,7 @@ namespace palpate::cli {
 namespace {
 
 struct Called {
-  std::string program = "palpate", line;
+  std::string program = "palpate", line, kept;
   std::vector<std::string> verbs;
 };
 Called& called() {
@@ -27,14 +27,18 @@ Called& called() {
 }  // namespace
 
 const std::string& command_line() { return called().line; }
+const std::string& kept_command() { return called().kept; }
 
 void set_command_line(const CLI::App& app, const std::string& program, const std::vector<std::string>& words) {
-  std::string line = shell_word(program);
-  for (const std::string& word : words) line += " " + shell_word(word);
+  std::string line = shell_word(program), kept = "palpate";
+  for (const std::string& word : words) {
+    line += " " + shell_word(word);
+    if (word != "--force" && word != "--json") kept += " " + shell_word(word);
+  }
   std::vector<std::string> verbs;
   for (const CLI::App* verb : app.get_subcommands([](const CLI::App*) { return true; }))
     verbs.push_back(verb->get_name());
-  called() = {shell_word(program), line, verbs};
+  called() = {shell_word(program), line, kept, verbs};
 }
 
 std::string with_program_name(std::string text) {

@@ -45,6 +45,8 @@ void add_study(CLI::App& app, Verbs& verbs);
 // The whole command as it was given, ready to copy, to which advice adds its options; set once by main, whose `app` has
 // all verbs.
 const std::string& command_line();
+// The same to be kept beside a result: with the plain name of the program, without --force and --json.
+const std::string& kept_command();
 void set_command_line(const CLI::App& app, const std::string& program, const std::vector<std::string>& words);
 // `text` with the program as it was called in every command: "palpate check" becomes "build/palpate check".
 std::string with_program_name(std::string text);
@@ -91,14 +93,14 @@ Result<std::vector<std::string>> recordings_in(const std::vector<std::string>& p
 struct FolderRun {
   using Row = std::vector<std::pair<std::string, nlohmann::ordered_json>>;  // column and value
   std::string label;                                                        // for the progress
-  std::string command;                                                      // without --force; kept in the folder
   std::string folder, out;                                                  // of the recordings, of the results
   std::string result, table;  // the result of NAME.csv is out/NAME + result, the table out/table.csv
   bool force = false;         // replaces all results
   std::function<Status(const std::string& recording, const std::string& result)> job;
   std::function<Row(const std::string& result)> row;
 };
-// Errors: no recordings; `out` was made by another command; the recordings that are not done, with their reasons.
+// kept_command() stands in the folder. Errors: no recordings; `out` was made by another command; the recordings that
+// are not done, with their reasons.
 Status run_folder(const FolderRun& run);
 
 // Errors: `out` is one of the files that are read. `option`: the option that named it, for the message.

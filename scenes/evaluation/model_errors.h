@@ -227,9 +227,11 @@ struct Ranking {
   std::optional<std::size_t> fastest_below_jnd;
 };
 
-// The rule. "The best model has the largest share of samples within one JND; where several have at least 99 %, the
-// lowest 99 % error. Differences that a paired bootstrap over strokes does not tell from zero, or below 0.5 points and
-// 0.1 JND, do not count; then the shortest tick decides."
+// The one rule, as every page shows it.
+inline constexpr const char* kBestRule =
+    "The best model has the largest share of samples within one JND; where several have at least 99 %, the lowest 99 % "
+    "error. Differences that a paired bootstrap over strokes does not tell from zero, or below 0.5 points and 0.1 JND, "
+    "do not count; then the shortest tick decides.";
 // A model below 99 % is compared with one of several above in both figures. A tick above `budget_ns` excludes a
 // candidate, unless all are above. `candidates`: at least one, each with samples.
 Ranking rank(const std::vector<Candidate>& candidates, double budget_ns = kBudget_ns);

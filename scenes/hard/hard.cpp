@@ -251,12 +251,6 @@ std::string below_text(const HardCell& cell) {
          (energy ? " " + general(1e3 * cell.figures.energy_J, 2) + " mJ" : "") + " · " + numerics;
 }
 
-std::string list_html(const std::vector<std::string>& lines) {
-  std::string html;
-  for (const std::string& line : lines) html += "<li>" + escape_html(line) + "</li>\n";
-  return html.empty() ? "" : "<h2>Not as expected</h2>\n<ul>\n" + html + "</ul>\n";
-}
-
 }  // namespace
 
 Result<std::vector<HardRow>> run_hard(const FitControl& control) {
@@ -327,21 +321,22 @@ nlohmann::ordered_json hard_json(const std::vector<HardRow>& rows) {
   return {{"cells", table_json(cells_table(rows))}};
 }
 
-Status write_hard_page(const std::vector<HardRow>& rows, const HardPage& page, const FitControl& control) {
+Status write_hard_page(const std::vector<HardRow>& rows, const PageRequest& page, const FitControl& control) {
   auto folder = ReportFolder::create(page.out, page.force);
   if (!folder) return folder.error();
   std::vector<Table> tables;
   for (std::size_t kind = 0; kind < std::size(kHardKinds); ++kind)
     tables.push_back(marks_table(rows, static_cast<HardKind>(kind)));
   tables.push_back(cells_table(rows));
+  const std::vector<std::string> missed = missed_cells(rows);
   nlohmann::ordered_json report{{"format", "palpate-hard"}, {"version", 1}, {"answer", hard_answer(rows)}};
   report.update(hard_json(rows));
-  return write_report(*folder, "hard.html", tables, {},
-                      {{"answer", escape_html(hard_answer(rows))},
-                       {"missed", list_html(missed_cells(rows))},
-                       {"jnd", escape_html(kJndDefinition)},
-                       {"origin", escape_html(page.origin)}},
-                      report, control);
+  return write_report(
+      *folder, page, "hard.html", tables, {},
+      {{"title", "Palpate: every method on every hard case"},
+       {"answer", escape_html(hard_answer(rows))},
+       {"missed", missed.empty() ? "" : "<h2>Not as expected</h2>\n<ul>\n" + list_html(missed) + "</ul>\n"}},
+      report, control);
 }
 
 }  // namespace palpate

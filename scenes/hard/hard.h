@@ -156,12 +156,7 @@ nlohmann::ordered_json hard_json(const std::vector<HardRow>& rows);
 Table marks_table(const std::vector<HardRow>& rows, std::optional<HardKind> kind = {});
 
 // Writes the page, its tables and report.json into the folder `out`. Errors: those of ReportFolder and write_report.
-struct HardPage {
-  std::string out;
-  bool force = false;
-  std::string origin;  // command line and version
-};
-Status write_hard_page(const std::vector<HardRow>& rows, const HardPage& page, const FitControl& control = {});
+Status write_hard_page(const std::vector<HardRow>& rows, const PageRequest& page, const FitControl& control = {});
 
 // A tool in a hand, in closed loop with the live tick. Time is simulated; the same settings give bit-identical results.
 //   m a = k (aim - x) + c (d aim/dt - v) + push - F

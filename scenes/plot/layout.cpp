@@ -68,36 +68,53 @@ struct Segment {
 };
 
 // Moves names from their points into one of the quadrants between the bars, to the right or left of the point and above
-// or below it: where a name covers the fewest other names and segments.
+// or below it: where a name covers the fewest other names and segments, and is nearest to its own point.
 void place_beside(std::vector<NameTag>& names, const std::vector<Segment>& segments, double line, double character) {
   const std::vector<NameTag> points = names;
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    const double width = character * static_cast<double>(names[i].text.size() + 1);
+  const auto begin_of = [&](const NameTag& name) {
+    return name.begins_here ? name.x : name.x - character * static_cast<double>(name.text.size() + 1);
+  };
+  const auto cost_of = [&](const NameTag& trial, std::size_t own, std::size_t placed) {
+    const double width = character * static_cast<double>(trial.text.size() + 1);
+    const double begin = begin_of(trial), end = begin + width;
+    // In lines; a line is about twice as high as a letter is wide.
+    const auto distance = [&](const NameTag& point) {
+      const double beside = std::max({0.0, begin - point.x, point.x - end}) / (2.0 * character);
+      return std::hypot(beside, std::max(0.0, std::abs(point.y - trial.y) / line - 0.5));
+    };
+    double cost = 0.6 * std::abs(trial.y - points[own].y) / line;
+    if (begin < 0.0 || end > 1.0 || trial.y < 0.5 * line || trial.y > 1.0 - 0.5 * line) cost += 100.0;
+    for (const Segment& one : segments) {
+      const bool beside = one.x_high < begin - 0.5 * character || one.x_low > end;
+      if (!beside && one.y_high > trial.y - 0.5 * line && one.y_low < trial.y + 0.5 * line) cost += 1.0;
+    }
+    bool misleads = false;  // another point is as near
+    for (std::size_t k = 0; k < names.size(); ++k) {
+      if (k == own) continue;
+      misleads = misleads || distance(points[k]) < distance(points[own]) + 0.3;
+      const double other = begin_of(names[k]),
+                   other_end = other + character * static_cast<double>(names[k].text.size() + 1);
+      if (k < placed && other < end && begin < other_end && std::abs(names[k].y - trial.y) < line) cost += 20.0;
+    }
+    return misleads ? cost + 6.0 : cost;
+  };
+  // Each name is placed among those before it, then twice more among all.
+  for (std::size_t turn = 0; turn < 3 * names.size(); ++turn) {
+    const std::size_t i = turn % names.size();
     double least = std::numeric_limits<double>::infinity();
-    for (const double lines : {0.7, -0.7, 1.2, -1.2, 1.7, -1.7, 2.3, -2.3}) {
+    NameTag chosen = names[i];
+    for (const double lines : {0.0, 0.7, -0.7, 1.2, -1.2, 1.7, -1.7, 2.3, -2.3, 3.0, -3.0}) {
       for (const bool right : {true, false}) {
         NameTag trial = points[i];
         trial.y += lines * line;
         trial.begins_here = right;
-        const double begin = right ? trial.x : trial.x - width;
-        double cost = 0.6 * std::abs(lines);
-        if (begin < 0.0 || begin + width > 1.0 || trial.y < 0.5 * line || trial.y > 1.0 - 0.5 * line) cost += 100.0;
-        for (const Segment& one : segments) {
-          const bool beside = one.x_high < begin || one.x_low > begin + width;
-          if (!beside && one.y_high > trial.y - 0.5 * line && one.y_low < trial.y + 0.5 * line) cost += 1.0;
-        }
-        for (std::size_t k = 0; k < i; ++k) {
-          const double other = character * static_cast<double>(names[k].text.size() + 1);
-          const double other_begin = names[k].begins_here ? names[k].x : names[k].x - other;
-          const bool overlaps = other_begin < begin + width && begin < other_begin + other;
-          if (overlaps && std::abs(names[k].y - trial.y) < line) cost += 10.0;
-        }
+        const double cost = cost_of(trial, i, turn < names.size() ? i : names.size());
         if (cost >= least) continue;
         least = cost;
-        names[i].y = trial.y;
-        names[i].begins_here = right;
+        chosen = trial;
       }
     }
+    names[i] = chosen;
   }
 }
 

@@ -235,6 +235,9 @@ Figure speed_figure(const ReportData& data) {
   } else {
     panel.x.title += " (the budget, 1 ms, is off to the right)";
   }
+  // Room for names on the left of the fastest models.
+  const AxisRange times = range_of(panel, false);
+  panel.x.low = times.low * std::pow(times.low / times.high, 0.2);
   figure.plot.name = "speed_error";
   figure.plot.width = 0.75;
   figure.plot.height = 1.9;

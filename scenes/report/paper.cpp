@@ -537,11 +537,10 @@ Result<std::string> make_paper(const PaperRequest& request, const FitControl& co
   const std::string answer = summary(*data, claims);
   nlohmann::ordered_json report{{"format", "palpate-paper"}, {"version", 1}, {"answer", answer}};
   for (const Table& table : tables) report["tables"][table.name] = table_json(table);
-  const Status written = write_report(*folder, "paper.html", tables, paper_figures(*data),
-                                      {{"answer", escape_html(answer)},
-                                       {"runs", escape_html(runs_words(*data))},
-                                       {"jnd", escape_html(kJndDefinition)},
-                                       {"origin", escape_html(request.origin)}},
+  const Status written = write_report(*folder, request, "paper.html", tables, paper_figures(*data),
+                                      {{"title", "The protocol of Hoever &amp; Harders (2009) on virtual material"},
+                                       {"answer", escape_html(answer)},
+                                       {"runs", escape_html(runs_words(*data))}},
                                       report, control);
   if (!written) return written.error();
   return answer;

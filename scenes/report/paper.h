@@ -20,6 +20,7 @@
 #include "engine/tick/jnd.h"
 #include "scenes/evaluation/evaluate.h"
 #include "scenes/evaluation/model_errors.h"
+#include "scenes/report/publish.h"
 #include "scenes/study/study_analysis.h"
 
 namespace palpate {
@@ -115,11 +116,8 @@ std::string run_name(const PaperRun& run);
 // Writes index.html, report.json, tables and figures 2 to 8 into `out`, which appears only when it is complete.
 // Returns how many claims were reproduced, as a sentence. Errors: those of ReportFolder::create, measure_paper and
 // draw_figures; interrupted.
-struct PaperRequest {
+struct PaperRequest : PageRequest {
   bool quick = false;
-  std::string out;
-  bool force = false;  // replaces an existing folder
-  std::string origin;  // command line and version, for the page
 };
 Result<std::string> make_paper(const PaperRequest& request, const FitControl& control = {});
 

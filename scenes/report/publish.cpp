@@ -211,6 +211,12 @@ std::string table_html(const Table& table) {
   return html + "</tbody></table></div>\n";
 }
 
+std::string list_html(const std::vector<std::string>& lines) {
+  std::string html;
+  for (const std::string& line : lines) html += "<li>" + escape_html(line) + "</li>\n";
+  return html;
+}
+
 std::string inline_svg(const std::string& svg, const std::string& name, const std::string& title) {
   const std::size_t open = svg.find("<svg");
   if (open == std::string::npos) return {};
@@ -293,12 +299,14 @@ Status ReportFolder::commit() {
   return {};
 }
 
-Status write_report(ReportFolder& folder, const std::string& page_template, const std::vector<Table>& tables,
-                    const std::vector<Figure>& figures, std::map<std::string, std::string> parts,
-                    const nlohmann::ordered_json& report, const FitControl& control) {
+Status write_report(ReportFolder& folder, const PageRequest& request, const std::string& page_template,
+                    const std::vector<Table>& tables, const std::vector<Figure>& figures,
+                    std::map<std::string, std::string> parts, const nlohmann::ordered_json& report,
+                    const FitControl& control) {
   for (const Table& table : tables) {
     if (const Status status = folder.write("tables/" + table.name + ".csv", table_csv(table)); !status) return status;
     parts[table.name] = table.rows.empty() ? "" : table_html(table);
+    parts["tables"] += ", <a href=\"tables/" + table.name + ".csv\">" + table.name + "</a>";
   }
   const std::string place = folder.path_of("figures");
   std::error_code ignored;
@@ -317,7 +325,13 @@ Status write_report(ReportFolder& folder, const std::string& page_template, cons
   const auto style = read_template("style.css");
   if (!style) return style.error();
   parts["style"] = *style;
-  const auto page = fill_page(page_template, parts);
+  parts["jnd"] = escape_html(kJndDefinition);
+  parts["rule"] = escape_html(kBestRule);
+  parts["origin"] = escape_html(request.command + " · " + request.version + parts["origin"]);
+  const auto body = fill_page(page_template, parts);
+  if (!body) return body.error();
+  parts["body"] = *body;
+  const auto page = fill_page("frame.html", parts);
   if (!page) return page.error();
   // Names of recordings may be invalid UTF-8; such bytes are replaced.
   const std::string json = report.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";

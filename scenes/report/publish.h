@@ -74,6 +74,9 @@ std::vector<std::vector<std::string>> table_text(const Table& table);
 // <div><table>...</table></div> with all text escaped. A cell that begins with ✗ is red.
 std::string table_html(const Table& table);
 
+// <li>...</li> for each line.
+std::string list_html(const std::vector<std::string>& lines);
+
 // Converts an SVG drawing of gnuplot for a page. Removes the prologue and the fixed size, prefixes ids with `name`, and
 // replaces the neutral colours of assets/figures/style.gp by the page's CSS variables (--ink, --muted, --grid, --band,
 // --paper), so that the drawing follows the light or dark theme. Returns an empty string where `svg` is no SVG.
@@ -103,18 +106,28 @@ class ReportFolder {
   std::unique_ptr<ScratchFolder> temporary_;
 };
 
+// What a verb that writes a page is asked for.
+struct PageRequest {
+  std::string out;      // the folder
+  bool force = false;   // replaces an earlier page there
+  std::string command;  // that made it; for the page, as the version of the program
+  std::string version;
+};
+
 struct Figure {
   Plot plot;
   std::string caption;  // plain text
 };
 
 // Writes tables/NAME.csv, the figures into the subfolder figures, report.json, which marks the folder as a report that
-// may be replaced, and index.html, and commits the folder. index.html is assets/report/TEMPLATE with every {{key}}
-// replaced: by its value in `parts`, by the table or the figure of that name, {{figures}} by all figures, {{style}} by
-// style.css. Errors: those of ReportFolder and draw_plots; a template is missing or has an unknown key; a file cannot
-// be read or written; interrupted.
-Status write_report(ReportFolder& folder, const std::string& page_template, const std::vector<Table>& tables,
-                    const std::vector<Figure>& figures, std::map<std::string, std::string> parts,
-                    const nlohmann::ordered_json& report, const FitControl& control);
+// may be replaced, and index.html, and commits the folder. index.html is assets/report/frame.html around TEMPLATE, with
+// every {{key}} replaced: by its value in `parts`, by the table or the figure of that name, {{figures}} by all figures,
+// {{style}} by style.css, {{jnd}} by kJndDefinition, {{rule}} by kBestRule, {{origin}} by command, version and what
+// `parts` has of it. Errors: those of ReportFolder and draw_plots; a template is missing or has an unknown key; a file
+// cannot be read or written; interrupted.
+Status write_report(ReportFolder& folder, const PageRequest& request, const std::string& page_template,
+                    const std::vector<Table>& tables, const std::vector<Figure>& figures,
+                    std::map<std::string, std::string> parts, const nlohmann::ordered_json& report,
+                    const FitControl& control);
 
 }  // namespace palpate

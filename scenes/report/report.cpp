@@ -132,12 +132,15 @@ std::vector<std::string> details(const ReportData& data, const ReportRequest& re
                     share_text(use.untared.within_jnd) + " within one JND.");
   if (choice.best != choice.recommended)
     lines.push_back("As good, but slower: " + compared(data.models[choice.best]) + ".");
-  if (choice.fastest_below_jnd && choice.fastest_below_jnd != choice.recommended)
+  // Times that differ by less than a tenth are as fast.
+  if (choice.fastest_below_jnd &&
+      data.models[*choice.fastest_below_jnd].time.tick.median_ns < 0.9 * use.time.tick.median_ns)
     lines.push_back("The fastest whose errors stay below the JND: " + compared(data.models[*choice.fastest_below_jnd]) +
                     ".");
   for (std::size_t i = 1; i < data.models.size(); ++i) {
     const ModelResult& one = data.models[i];
-    if (*one.plan != ModelPlan{} || one.selects_size || family_name(*use.plan) == family_name(*one.plan)) continue;
+    const std::string family = family_name(*one.plan);
+    if (family != family_name(ModelPlan{}) || one.selects_size || family == family_name(*use.plan)) continue;
     lines.push_back("palpate fit without --method makes " + compared(one) +
                     (choice.as_good[i] ? "; it is as good, and " + use.name + " is faster." : "; it is worse here."));
   }
@@ -191,23 +194,7 @@ OrderedJson report_json(const ReportData& data, const ReportRequest& request, co
             {"as_good", as_good},
             {"tables", times}}},
           {"program", {{"version", request.version}, {"compiler", kCompiler}}},
-          {"command_line", request.command_line}};
-}
-
-// Describes methods whose 99 % error is larger with more centres, by a difference that counts.
-std::vector<std::string> rising_errors(const ReportData& data) {
-  std::vector<std::string> notes;
-  for (const ModelResult& few : data.models) {
-    for (const ModelResult& many : data.models) {
-      if (!few.model || !many.model || few.size >= many.size || !few.plan->selects_centres()) continue;
-      const double rise = many.errors.p99_error_over_jnd - few.errors.p99_error_over_jnd;
-      if (family_name(*few.plan) != family_name(*many.plan) || rise < kLeastDifference_jnd) continue;
-      notes.push_back("More centres are worse here: " + many.name + " has a 99 % error of " +
-                      three_digits(many.errors.p99_error_over_jnd) + " JND, " + few.name + " of " +
-                      three_digits(few.errors.p99_error_over_jnd) + " JND.");
-    }
-  }
-  return notes;
+          {"command_line", request.command}};
 }
 
 // How far the 95 % bound of the recommended model holds.
@@ -228,7 +215,6 @@ std::string notes_html(const ReportData& data, const ReportRequest& request) {
   for (const ModelResult& one : data.models) {
     if (!one.same.empty()) notes.push_back("The same forces as " + one.name + ": " + joined(one.same) + ".");
   }
-  for (std::string& one : rising_errors(data)) notes.push_back(std::move(one));
   notes.push_back(bound_note(data.models[data.choice.recommended]));
   const std::string& tested_on = data.recordings.folds.front().words;
   if (!tested_on.empty()) notes.push_back("No test recording: " + tested_on + ".");
@@ -252,47 +238,44 @@ std::string notes_html(const ReportData& data, const ReportRequest& request) {
                   " mN, from second differences in the quietest fifth of each test recording, without drift).");
   notes.push_back(accelerometer ? "With the accelerometer of the recordings."
                                 : "From positions alone, without an accelerometer.");
-  std::string html = "<ul class=\"notes\">";
-  for (const std::string& note : notes) html += "<li>" + escape_html(note) + "</li>";
-  return html + "</ul>\n";
+  return list_html(notes);
 }
 
-std::string learnt_html(const ReportData& data) {
-  const ModelResult& chosen = data.models[data.choice.recommended];
+Table identified_table(const ReportData& data) {
+  Table table;
+  const auto add = [&](const std::string& what, const std::string& value) {
+    table.begin_row();
+    table.add({"", "identified"}, what);
+    table.add({"", "value"}, value);
+  };
   std::vector<std::string> features, times;
-  for (const FeatureSpec& spec : chosen.model->features())
+  for (const FeatureSpec& spec : data.models[data.choice.recommended].model->features())
     features.push_back(feature_name(spec).substr(std::string("feature_").size()));
   for (const double time_s : data.papers_times_s) times.push_back(three_digits(time_s));
-  const auto row = [](const char* name, const std::string& value) {
-    return "<tr><td class=\"text\">" + std::string(name) + "</td><td class=\"text\">" + escape_html(value) +
-           "</td></tr>\n";
-  };
-  std::string html = "<table class=\"learnt\">" + row("Features", joined(features));
-  html += row("Correction by centres", data.corrects ? "used: it lowers the cross-validated error"
-                                                     : "not used: it does not lower the cross-validated error");
+  add("Features", joined(features));
+  add("Correction by centres", data.corrects ? "used: it lowers the cross-validated error"
+                                             : "not used: it does not lower the cross-validated error");
   if (!times.empty())
-    html += row("Relaxation times of the methods on the force",
-                joined(times, " and ") + " s, fitted to the training recordings");
-  for (const auto& [centres, choices] : data.choices) {
-    html += row(("On the force, " + (centres > 0 ? std::to_string(centres) + " centres" : "direct and voxel")).c_str(),
-                choices_text(choices));
-  }
+    add("Relaxation times of the methods on the force",
+        joined(times, " and ") + " s, fitted to the training recordings");
+  for (const auto& [centres, choices] : data.choices)
+    add("On the force, " + (centres > 0 ? std::to_string(centres) + " centres" : "direct and voxel"),
+        choices_text(choices));
   for (const auto& [base, errors] : data.by_size) {
     std::vector<std::string> sizes;
     for (const auto& [size, error] : errors)
       sizes.push_back(std::to_string(size) + ": " + three_digits(error) + " JND");
-    html += row(base == Base::force ? "Cross-validated by number of centres, on the force"
-                                    : "Cross-validated by number of centres, on the trend",
-                joined(sizes));
+    add(std::string("Cross-validated by number of centres, on the ") + (base == Base::force ? "force" : "trend"),
+        joined(sizes));
   }
   for (const RecordingOffset& surface : data.surfaces) {
-    html += row(("Surface of " + escape_html(surface.name)).c_str(),
-                fixed(1e3 * surface.offset_m, 3) + " mm" +
-                    (std::isfinite(surface.standard_error_m) ? " ± " + fixed(1e3 * surface.standard_error_m, 3) + " mm"
-                                                             : ", not identified") +
-                    ", force zero " + fixed(1e3 * surface.force_zero_N, 1) + " mN");
+    add("Surface of " + surface.name,
+        fixed(1e3 * surface.offset_m, 3) + " mm" +
+            (std::isfinite(surface.standard_error_m) ? " ± " + fixed(1e3 * surface.standard_error_m, 3) + " mm"
+                                                     : ", not identified") +
+            ", force zero " + fixed(1e3 * surface.force_zero_N, 1) + " mN");
   }
-  return html + "</table>\n";
+  return table;
 }
 
 // The data, the library that draws it and the script of the page; without the library the page has its figures only.
@@ -341,21 +324,20 @@ Result<ReportAnswer> make_report(const ReportRequest& request, const FitControl&
   const std::string machine =
       processor() + ", " + std::to_string(std::max(1U, std::thread::hardware_concurrency())) + " cores";
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  const std::string origin = request.command_line + " · " + request.version + ", " + kCompiler + " · " + machine +
-                             " · " + three_digits(seconds) + " s";
   const OrderedJson json = report_json(*data, request, tables, figures, machine, seconds);
   std::vector<std::string> tests;
   for (const TestedRecording& one : data->tested) tests.push_back(one.recording->recording.name);
   if (const Status status = folder->write("model.json", *model); !status) return status.error();
-  const Status written = write_report(*folder, "page.html", tables, figures,
-                                      {{"title", escape_html(joined(tests))},
-                                       {"answer", escape_html(words)},
-                                       {"headline", table_html(headline_table(*data))},
-                                       {"curves", curves_html(curves_json(*data))},
-                                       {"notes", notes_html(*data, request)},
-                                       {"learnt", learnt_html(*data)},
-                                       {"origin", escape_html(origin)}},
-                                      json, control);
+  const Status written =
+      write_report(*folder, request, "page.html", tables, figures,
+                   {{"title", "Palpate report: " + escape_html(joined(tests))},
+                    {"answer", escape_html(words)},
+                    {"headline", table_html(headline_table(*data))},
+                    {"curves", curves_html(curves_json(*data))},
+                    {"notes", notes_html(*data, request)},
+                    {"identified", table_html(identified_table(*data))},
+                    {"origin", std::string(", ") + kCompiler + " · " + machine + " · " + three_digits(seconds) + " s"}},
+                   json, control);
   if (!written) return written.error();
   return ReportAnswer{table_text(headline_table(*data)), words, details(*data, request)};
 }

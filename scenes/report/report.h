@@ -33,7 +33,7 @@ std::string curves_json(const ReportData& data);
 // Error over time, the worst stretch, and the error by force.
 std::vector<Figure> make_figures(const ReportData& data);
 
-struct ReportRequest {
+struct ReportRequest : PageRequest {
   Scene scene;
   std::vector<PreparedRecordingPointer> train;  // empty: the virtual silicone
   std::vector<PreparedRecordingPointer> test;   // empty: see split_recordings
@@ -41,10 +41,6 @@ struct ReportRequest {
   std::vector<std::string> test_files{};        // their paths, for a command in the answer
   bool quick = false;                           // fewer models
   double budget_ns = kBudget_ns;                // the longest tick of a model that is recommended
-  std::string out;
-  bool force = false;  // replaces an earlier report in `out`
-  std::string command_line;
-  std::string version;
 };
 
 // What the terminal shows.

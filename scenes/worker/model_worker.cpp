@@ -81,7 +81,7 @@ const std::vector<MethodChoice>& method_choices() {
 
 const std::vector<LineUp>& line_ups() {
   static const std::vector<LineUp> all = {
-      {"Comparison", "the methods of Hoever & Harders (2009) with 100 centres, and this program's best",
+      {"Comparison", "the methods of Hoever & Harders (2009) with 100 centres, and this program's default",
        plans_on(Base::force)},
       {"Sizes", "the greedy method with 10 to 200 centres", sizes_of(kGreedyMethod)},
       {"Corrections", "the trend alone, and with the correction of each method", plans_on(Base::trend)},

@@ -1,6 +1,6 @@
 """loop.py [MODEL.json [SECONDS]]: a loop of your own with the emulated device of ../bridge/bridge.py: unwraps the clock of
 the device, measures the lag, renders the model. Without a model it fits the recording of the examples."""
-import collections
+import math
 import pathlib
 import struct
 import subprocess
@@ -38,19 +38,18 @@ def main(model=None, seconds=5.0):
         frame = struct.pack("<4sIiHBB", b"PB\x01O", sequence, round(1e6 * force_N), sequence & 0xFFFF, drive, 0)
         device.stdin.write(frame + struct.pack("<I", zlib.crc32(frame)))
 
-    sampled_s, lags_s, before_s = {}, collections.deque(maxlen=1000), -1e-3
+    sampled_s, before_s = {}, -1e-3
     send(0, 0.0, 0)
     for sequence, (time_s, position_m, acted) in enumerate(samples(open(device.stdout.fileno(), "rb", closefd=False)), 1):
-        # The age of the force that acted at this sample, in the clock of the device; its largest value counts.
-        if acted in sampled_s:
-            lags_s.append(time_s - sampled_s[acted])
-            limiter.set_lag(max(lags_s))
+        # From which sample the force came that acted at this one, in the clock of the device; unknown at first.
+        acted_s = sampled_s.get(acted, math.nan)
+        limiter.acted(acted_s)
         force_N = limiter.render(stream, time_s, position_m, time_s - before_s)
         sampled_s[sequence & 0xFFFF], before_s = time_s, time_s
         send(sequence, force_N, 1)
-        if sequence % 500 == 0:
+        if sequence % 600 == 0:
             print("force %.3f N, lag %.1f ms, stiffness share %.2f, flags %d"
-                  % (force_N, 1e3 * max(lags_s, default=0.0), limiter.stiffness_share, limiter.flags))
+                  % (force_N, 1e3 * (time_s - acted_s), limiter.stiffness_share, limiter.flags))
         if time_s > float(seconds):
             break
     send(sequence + 1, 0.0, 0)

@@ -185,11 +185,16 @@ PALPATE_API void palpate_limiter_free(palpate_limiter*);
 PALPATE_API double palpate_limiter_render(palpate_limiter*, palpate_stream*, double time_s, double position_m,
                                           double step_s);
 /* The lag of the force behind the motion for palpate_limiter_render: transport there and back, waits, and half the time
- * for which a force is held. It cannot be measured from here. The default, and the least, is 1.5 times the interval
- * between calls or samples. Returns 0, or -1 for a value below 0 or not finite, which is ignored. Wait-free. */
+ * for which a force is held. It cannot be measured from here but by palpate_limiter_acted. The default, and the least,
+ * is 1.5 times the interval between calls or samples. Returns 0, or -1 for a value below 0 or not finite, which is
+ * ignored. Wait-free. */
 PALPATE_API int palpate_limiter_set_lag(palpate_limiter*, double lag_s);
-/* The part of the model's force that the stability limit leaves with this lag: 1 is all. Below 0.95 the rendered
- * material is noticeably softer than the model (PALPATE_LIMIT_REDUCED). For palpate_limiter_render. Wait-free. */
+/* For a device that reports which command acts; called before each palpate_limiter_render: the force that acted at the
+ * sample to come was computed from the sample of the time sampled_s. The limiter measures the lag from these times, as
+ * the program does, and there is no force before the first is known; NaN: it is not. Wait-free. */
+PALPATE_API void palpate_limiter_acted(palpate_limiter*, double sampled_s);
+/* The part of the model's force that the stability limit leaves with this lag: 1 is all. Below 0.95
+ * PALPATE_LIMIT_REDUCED is set. For palpate_limiter_render. Wait-free. */
 PALPATE_API double palpate_limiter_stiffness_share(const palpate_limiter*);
 /* The limiter alone: the force to render instead of `commanded_N`, always finite. `step_s`: since the last call;
  * `sample_age_s`: age of the sample that the force was computed from, 0 for a new one. Wait-free. */

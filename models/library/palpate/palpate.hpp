@@ -157,6 +157,7 @@ class Limiter {
   }
   // False, and no change: below 0 or not finite.
   bool set_lag(double lag_s) noexcept { return palpate_limiter_set_lag(limiter_.get(), lag_s) == 0; }
+  void acted(double sampled_s) noexcept { palpate_limiter_acted(limiter_.get(), sampled_s); }
   double stiffness_share() const noexcept { return palpate_limiter_stiffness_share(limiter_.get()); }
   double force(double commanded_N, double step_s, double sample_age_s = 0.0) noexcept {
     return palpate_limiter_force(limiter_.get(), commanded_N, step_s, sample_age_s);

@@ -252,12 +252,15 @@ struct OwnLoop {
   double step_s = 1e-3;
   std::size_t delay = 1;
   double given_s = step_s;  // the step that it names
+  bool tells = false;       // which force acts
   double position_m = 0.0, velocity_m_per_s = 0.0, time_s = 0.0;
   std::deque<double> forces_N{};
 
   // `wrong`: what to give instead of the sample.
   double call(std::optional<std::pair<double, double>> wrong = std::nullopt) {
     time_s += step_s;
+    if (tells)
+      palpate_limiter_acted(limiter, forces_N.empty() ? NAN : time_s - step_s * static_cast<double>(forces_N.size()));
     const auto [at_s, at_m] = wrong.value_or(std::pair{time_s, 1e-5 * std::round(1e5 * position_m)});
     forces_N.push_back(palpate_limiter_render(limiter, stream, at_s, at_m, given_s));
     if (forces_N.size() > delay + 1) forces_N.pop_front();
@@ -329,18 +332,18 @@ TEST_F(LibraryC, ALateOrSlowLoopOfItsOwnDoesNotDriveAHand) {
     std::size_t delay;
     bool stopped;
   };
-  for (const auto& [step_s, delay, stopped] : {Case{1e-3, 1, false},
-                                               {1e-3, 6, false},
-                                               {4e-3, 1, false},
-                                               {10e-3, 1, false},
-                                               {12.5e-3, 1, true},
-                                               {33e-3, 1, true}}) {
-    SCOPED_TRACE(std::to_string(step_s) + " s, " + std::to_string(delay));
+  for (int i = 0; i < 12; ++i) {
+    constexpr Case kCases[] = {{1e-3, 1, false},  {1e-3, 6, false},   {4e-3, 1, false},
+                               {10e-3, 1, false}, {12.5e-3, 1, true}, {33e-3, 1, true}};
+    const auto [step_s, delay, stopped] = kCases[i / 2];
+    const bool tells = i % 2 == 1;
+    SCOPED_TRACE(std::to_string(step_s) + " s, " + std::to_string(delay) + (tells ? ", measured" : ", named"));
     const StreamPtr one = stream(model, {1e-5, 0.0, 0.0, 0.0});
     const LimiterHandle limiter = default_limiter();
-    palpate_limiter_set_lag(limiter.get(), step_s * (static_cast<double>(delay) + 0.5));
-    OwnLoop loop{one.get(), limiter.get(), step_s, delay};
+    if (!tells) palpate_limiter_set_lag(limiter.get(), step_s * (static_cast<double>(delay) + 0.5));
+    OwnLoop loop{one.get(), limiter.get(), step_s, delay, step_s, tells};
     loop.press();
+    EXPECT_EQ(palpate_limiter_stiffness_share(limiter.get()) < 0.95, step_s > 1e-3 || delay > 1 || tells);
     EXPECT_LT(loop.swing_m(), 0.2e-3);
     EXPECT_EQ(loop.call() == 0.0, stopped);
     EXPECT_EQ((palpate_limiter_flags(limiter.get()) & PALPATE_LIMIT_STOPPED) != 0, stopped);

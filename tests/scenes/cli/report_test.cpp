@@ -93,6 +93,36 @@ TEST_F(ReportVerb, TheAnswerIsOneLineAndItsModelIsWritten) {
     }
 }
 
+// A test that begins in a press continues the recording before it, as in replay, and errs less than from rest.
+TEST_F(ReportVerb, ATestContinuesAnotherRecording) {
+  const test::TemporaryFolder folder;
+  Recording before = test::must(read_recording(recording(2))), tested = before;
+  const auto half = tested.rows.begin() + static_cast<std::ptrdiff_t>(tested.rows.size() / 2);
+  const auto pressed = std::ranges::max_element(tested.rows.begin(), half, {}, &RecordingRow::position_m);
+  before.rows.resize(static_cast<std::size_t>(pressed - tested.rows.begin()));
+  tested.rows.erase(tested.rows.begin(), pressed);
+  for (const auto& [name, part] : {std::pair{"before.csv", before}, {"test.csv", tested}})
+    ASSERT_TRUE(write_recording(folder.file(name), part, {}, false).ok());
+  const std::string model = folder.file("model.json"), page = folder.file("page");
+  test::must_run({"fit", "--recording", recording(1), "--method", "trend", "--out", model});
+  std::vector<double> errors_N;
+  for (const bool continues : {false, true}) {
+    std::vector<std::string> asked{"--train", recording(1), "--test", folder.file("test.csv"),
+                                   "--out",   page,         "--force"};
+    std::vector<std::string> replayed{"replay", "--recording", folder.file("test.csv"), "--model", model, "--json"};
+    for (auto* command : {&asked, &replayed})
+      if (continues) command->insert(command->end(), {"--after", folder.file("before.csv")});
+    const auto made = report(asked);
+    ASSERT_EQ(made.exit_code, 0) << made.err;
+    const Json rows = json_of(page)["tables"]["models"], replay = Json::parse(test::must_run(replayed).out);
+    const auto row = std::ranges::find(rows, "trend", [](const Json& one) { return one["model"]; });
+    ASSERT_NE(row, rows.end());
+    EXPECT_EQ((*row)["rms_error_N"], replay["models"][0]["rms_error_N"]);
+    errors_N.push_back((*row)["rms_error_N"]);
+  }
+  EXPECT_LT(errors_N[1], 0.9 * errors_N[0]);
+}
+
 TEST_F(ReportVerb, PageNeedsNothingElse) {
   std::string page = test::read_text(out() + "/index.html");
   EXPECT_LT(page.size(), 1000000u);
@@ -152,7 +182,7 @@ TEST_F(ReportVerb, ThePagesAreRightInABrowser) {
   one.why = "what is hard";
   std::vector<HardRow> rows = {{one, std::vector<HardCell>(hard_methods().size())}};
   rows.front().cells.back().breaks = kBreaksStep;
-  ASSERT_TRUE(write_hard_page(rows, {folder.file("hard"), false, "palpate hard"}).ok());
+  ASSERT_TRUE(write_hard_page(rows, {folder.file("hard"), false, "palpate hard", "palpate"}).ok());
   test::must_run({"paper", "--quick", "--out", folder.file("paper")});
   fs::copy(out(), folder.file("report"), fs::copy_options::recursive);
   std::string frames =

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <filesystem>
 #include <limits>
+#include <regex>
 
 #include "tests/support/message_parts.h"
 #include "tests/support/temporary_folder.h"
@@ -38,6 +39,13 @@ TEST(Table, AnIntervalStandsUnderItsFigureAndInTheFileBesideIt) {
                     {{0.5, 0.25, 0.75}}};
   EXPECT_EQ(table_csv(table), "share,share_low,share_high\n0.5,0.25,0.75\n");
   EXPECT_TRUE(test::has_parts(table_html(table), {"<td>50.0<small>25.0–75.0</small></td></tr>"}));
+}
+
+TEST(Pages, TheFrontPageSaysTheRuleAndTheJndAsThePagesDo) {
+  const std::string text =
+      std::regex_replace(test::read_text(PALPATE_SOURCE_DIR "/README.md"), std::regex("\\s+"), " ");
+  const std::string jnd = kJndDefinition;
+  EXPECT_TRUE(test::has_parts(text, {jnd.substr(1, jnd.find(';') - 1), kBestRule}));
 }
 
 TEST(ReportFolder, AppearsWholeOnCommit) {

@@ -17,9 +17,9 @@ A recording is a `palpate.Recording`: a structured numpy array with the fields t
 or table with these columns, or the path of a file.
 
 Units are SI. Positions run along the inward surface normal, 0 at the undisturbed surface; forces are
-positive when the material pushes the tool out. A just noticeable difference (JND) is the smallest
-error that a hand can notice. An invalid file, array or option raises `Error`. Arrays may be of any
-numeric type and need not be contiguous. An argument of a wrong type is a `TypeError`, too.
+positive when the material pushes the tool out. One just noticeable difference (JND) is the
+difference that people notice in three of four trials. An invalid file, array or option raises `Error`. Arrays may be of
+any numeric type and need not be contiguous. An argument of a wrong type is a `TypeError`, too.
 
 The package loads ``libpalpate_fit``: the one named by the environment variable PALPATE_LIBRARY, else the one that pip
 put beside it, else that of the source tree's ``build`` when it is imported from there, else the installed one.

@@ -147,6 +147,7 @@ _SIGNATURES = {
     "palpate_limiter_free": (None, [_HANDLE]),
     "palpate_limiter_render": (_DOUBLE, [_HANDLE, _HANDLE, _DOUBLE, _DOUBLE, _DOUBLE]),
     "palpate_limiter_set_lag": (_INT, [_HANDLE, _DOUBLE]),
+    "palpate_limiter_acted": (None, [_HANDLE, _DOUBLE]),
     "palpate_limiter_stiffness_share": (_DOUBLE, [_HANDLE]),
     "palpate_limiter_force": (_DOUBLE, [_HANDLE, _DOUBLE, _DOUBLE, _DOUBLE]),
     "palpate_limiter_stop": (None, [_HANDLE]),

@@ -242,6 +242,11 @@ class Limiter(Handle):
         if self._library.palpate_limiter_set_lag(self._handle, number("lag_s", lag_s)) != 0:
             raise Error("lag_s: found %r, expected 0 or more" % lag_s)
 
+    def acted(self, sampled_s: float) -> None:
+        """For a device that reports which command acts, before each `render`: the force that acted at the sample to
+        come was computed from the sample of the time `sampled_s`; NaN: not known. The limiter measures its lag so."""
+        self._library.palpate_limiter_acted(self._handle, number("sampled_s", sampled_s))
+
     def force(self, commanded_N: float, step_s: float, sample_age_s: float = 0.0) -> float:
         """The limiter alone: the force to render instead of `commanded_N`, always finite [N]."""
         return self._library.palpate_limiter_force(self._handle, number("commanded_N", commanded_N),
@@ -253,8 +258,8 @@ class Limiter(Handle):
 
     @property
     def stiffness_share(self) -> float:
-        """The part of the model's force that stability leaves with the lag of the loop; 1: all. Below 0.95 the material
-        is noticeably softer than the model (flag 128)."""
+        """The part of the model's force that stability leaves with the lag of the loop; 1: all. Below 0.95
+        flag 128 is set."""
         return self._library.palpate_limiter_stiffness_share(self._handle)
 
     @property
