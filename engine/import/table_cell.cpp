@@ -3,7 +3,6 @@
 #include <charconv>
 #include <chrono>
 #include <cmath>
-#include <functional>
 #include <iterator>
 #include <numeric>
 #include <string>
@@ -220,36 +219,39 @@ void ColumnTimes::measure_steps() {
     last = time;
   }
   if (steps.empty()) return;
-  const auto count = static_cast<double>(intervals);
-  mean_step = std::accumulate(steps.begin(), steps.end(), 0.0) / count;
-  median_step = nth_smallest(steps, steps.size() / 2) * static_cast<double>(steps.size()) / count;
+  plain_step = nth_smallest(steps, steps.size() / 2);
+  const auto count = static_cast<double>(steps.size());
+  steady = std::abs(std::accumulate(steps.begin(), steps.end(), 0.0) / count / plain_step - 1.0) < 1e-3;
+  median_step = plain_step * count / static_cast<double>(intervals);
 }
 
 Result<ColumnTimes> read_times(const Fields& cells, char decimal) {
   ColumnTimes times;
   const auto first =
       std::ranges::find_if(cells, [](std::string_view cell) { return !cell.empty() && !is_missing_value(cell); });
+  times.since_first.reserve(cells.size());
   times.of_a_clock = first != cells.end() && !parse_plain_time(*first, decimal) && is_of_a_clock(*first);
   times.with_dates = times.of_a_clock && has_date(*first);
+  const auto parse = [&](std::string_view cell, bool day_first) {
+    return times.of_a_clock ? parse_clock(cell, day_first) : parse_plain_time(cell, decimal);
+  };
   // The order of day and month in which the most cells are dates; of two the one in which the recording is shorter.
-  std::vector<std::optional<Time>> parsed;
-  std::pair<std::ptrdiff_t, double> best;  // cells that are no time, duration
+  std::array<std::pair<std::size_t, double>, 2> quality{};  // cells that are no time, duration
   for (const bool day_first : {true, false}) {
-    std::vector<std::optional<Time>> tried;
-    for (const std::string_view cell : cells)
-      tried.push_back(times.of_a_clock ? parse_clock(cell, day_first) : parse_plain_time(cell, decimal));
-    const auto is_time = [](const auto& time) { return time.has_value(); };
-    const auto begin = std::ranges::find_if(tried, is_time);
-    const auto end = std::find_if(tried.rbegin(), tried.rend(), is_time);
-    const std::pair quality{std::ranges::count_if(tried, std::not_fn(is_time)),
-                            begin == tried.end() ? 0.0 : std::abs(since(**end, **begin))};
-    if (parsed.empty() || quality < best) parsed = std::move(tried), best = quality;
-    if (!times.with_dates) break;
+    std::optional<Time> begin, end;
+    for (std::size_t i = 0; times.with_dates && i < cells.size(); ++i) {
+      const auto time = parse(cells[i], day_first);
+      if (!time) ++quality[day_first].first;
+      if (time) end = time;
+      if (!begin) begin = time;
+    }
+    if (begin) quality[day_first].second = std::abs(since(*end, *begin));
   }
+  const bool day_first = quality[true] <= quality[false];
   std::optional<Time> start;
   double last = 0.0;
   for (std::size_t i = 0; i < cells.size(); ++i) {
-    const auto& time = parsed[i];
+    const auto time = parse(cells[i], day_first);
     times.since_first.push_back(std::nan(""));
     if (!time) {
       // Cells with digits that are neither text between the rows nor damaged: all are like the first one.
