@@ -63,8 +63,8 @@ Reading part_reading(const std::string& option, std::size_t rows, const std::str
 
 class Importer {
  public:
-  Importer(const ForeignText& foreign, const std::string& path, const ImportRequest& request)
-      : path_(path), request_(request), lines_(lines_of(foreign.text)) {
+  Importer(ForeignText foreign, const std::string& path, const ImportRequest& request)
+      : path_(path), request_(request), text_(std::move(foreign.text)), lines_(lines_of(text_)) {
     table_.encoding = foreign.encoding;
   }
 
@@ -80,7 +80,7 @@ class Importer {
  private:
   // A line that is a row in time. Without a clock it may be text, which keeps its place.
   struct Slot {
-    std::size_t line = 0;  // from 1
+    std::uint32_t line = 0;  // from 1
     bool is_row = true, good = true;
   };
 
@@ -140,10 +140,10 @@ class Importer {
     }
     return cells;
   }
-  // The plain numbers of a column; NaN where there is none.
+  // The plain numbers of a column; NaN where there is none. Without a column empty.
   std::vector<double> numbers_of(std::size_t number) const {
-    std::vector<double> numbers(slots_.size(), std::nan(""));
     const Fields cells = number > 0 ? cells_of(number) : Fields();
+    std::vector<double> numbers(cells.size(), std::nan(""));
     for (std::size_t i = 0; i < cells.size(); ++i) {
       double value = 0.0;
       if (parse_table_number(cells[i], layout_.decimal, value)) numbers[i] = value;
@@ -251,7 +251,7 @@ class Importer {
       const bool row = !comment && is_row(layout_, line, fields);
       if (!row) leave_out("text between the rows", i + 1);
       if (!row && texts_++ == 0) first_text_ = i + 1;
-      if (row || no_clock_) slots_.push_back({i + 1, row});
+      if (row || no_clock_) slots_.push_back({static_cast<std::uint32_t>(i + 1), row});
     }
     for (std::size_t i = block_.end; i < lines_.size() && !is_row(layout_, lines_[i], fields); ++i)
       if (!trimmed(lines_[i]).empty() && layout_.blocks.size() == 1) leave_out("text after the table", i + 1);
@@ -563,7 +563,8 @@ class Importer {
 
   // Reads every row. Rows that cannot be read keep their place in time.
   Status read_rows() {
-    for (const double time : times_.since_first) own_s_.push_back(to_si_[0] * time);
+    own_s_ = std::move(times_.since_first);
+    for (double& time : own_s_) time *= to_si_[0];
     if (number_[0] == 0) own_s_.assign(slots_.size(), std::nan(""));
     for (const std::size_t role : {1u, 2u}) values_[role] = values_of(role, cells_of(number_[role]));
     const bool two_clocks = has_two_clocks();  // one channel may have fewer values than the other
@@ -612,7 +613,7 @@ class Importer {
       most_s = std::max(most_s, last_s - own_s_[i]);
       // 140359.99 is followed by 140400.00, and 145959.99 by 150000.00.
       const double beyond_s = std::fmod(own_s_[i] - last_s, 4000.0) - 40.0, few_s = kSwappedSteps * step_s;
-      if (!no_clock_ && !times_.of_a_clock && std::abs(beyond_s) < few_s &&
+      if (!no_clock_ && !times_.of_a_clock && rate_in_range(step_s) && std::abs(beyond_s) < few_s &&
           std::fmod(first_s + own_s_[i], 100.0) < few_s)
         return fail_at(slots_[i].line, "found a time " + short_number(own_s_[i] - last_s) +
                                            " s after that of the row above" + quoted_name(number_[0]) +
@@ -832,6 +833,9 @@ class Importer {
     const std::vector<double> velocities = numbers_of(velocity_), accelerations = numbers_of(acceleration_);
     auto& recording = table_.recording;
     recording.columns = {velocity_ > 0, acceleration_ > 0};
+    // Everything is read: frees the text before the rows are made.
+    lines_ = {};
+    std::string().swap(text_);
     recording.rows.reserve(slots_.size());
     for (std::size_t i = 0; i < slots_.size(); ++i) {
       if (velocity_ > 0 && std::isnan(velocities[i])) recording.columns = {};
@@ -842,7 +846,8 @@ class Importer {
         leave_out("with the time of the row above", slots_[i].line);
         continue;
       }
-      recording.rows.push_back({time_s, values_[1][i], values_[2][i], velocities[i], accelerations[i]});
+      recording.rows.push_back({time_s, values_[1][i], values_[2][i], velocity_ > 0 ? velocities[i] : 0.0,
+                                acceleration_ > 0 ? accelerations[i] : 0.0});
     }
     const double seconds = recording.rows.back().time_s, own_s = own_s_.back();
     if (request_.rate_Hz && own_s > 0.0 && std::abs(seconds - own_s) > kDurationShare * own_s)
@@ -878,6 +883,7 @@ class Importer {
 
   const std::string& path_;
   const ImportRequest& request_;
+  std::string text_;
   std::vector<std::string_view> lines_;
   ImportedTable table_;
   TableLayout layout_;
@@ -899,9 +905,9 @@ class Importer {
 }  // namespace
 
 Result<ImportedTable> import_table(const std::string& path, const ImportRequest& request) {
-  const auto text = read_foreign_text(path);
+  auto text = read_foreign_text(path);
   if (!text) return text.error();
-  return Importer(*text, path, request).run();
+  return Importer(std::move(*text), path, request).run();
 }
 
 Status check_limits(const std::string& path, const ImportRequest& request, const ImportedTable& table) {

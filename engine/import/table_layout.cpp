@@ -59,7 +59,7 @@ struct Marks {
   }
 };
 
-Marks read_as(const std::vector<std::string_view>& lines, const Delimiter& delimiter, char decimal) {
+Marks read_as(Lines lines, const Delimiter& delimiter, char decimal) {
   Marks best{delimiter, decimal}, run = best;
   Fields fields;
   for (std::size_t i = 0; i < std::min(lines.size(), kSampleLines); ++i) {
@@ -81,7 +81,7 @@ Marks read_as(const std::vector<std::string_view>& lines, const Delimiter& delim
 
 // Refuses numbers whose decimal mark may be one of thousands in every cell: "1,234", but not "0,123" or "1,5"; points
 // only in a column where other numbers have none.
-Status check_decimal_mark(const std::vector<std::string_view>& lines, const TableLayout& layout) {
+Status check_decimal_mark(Lines lines, const TableLayout& layout) {
   Fields fields;
   std::string example;
   std::vector<bool> whole(layout.columns, false), grouped = whole;
@@ -117,7 +117,7 @@ Status check_decimal_mark(const std::vector<std::string_view>& lines, const Tabl
 }
 
 // Determines the fields of a row from the most frequent number of fields, and whether most rows begin with a word.
-void measure_rows(const std::vector<std::string_view>& lines, TableLayout& layout) {
+void measure_rows(Lines lines, TableLayout& layout) {
   struct Width {
     std::size_t rows = 0, last_value = 0, words = 0;
   };
@@ -143,7 +143,7 @@ void measure_rows(const std::vector<std::string_view>& lines, TableLayout& layou
 }
 
 // "1,2,3": the numbers of the columns. A row with these numbers is followed by one that is as near as the next.
-bool numbers_columns(const std::vector<std::string_view>& lines, const TableLayout& layout, std::size_t i) {
+bool numbers_columns(Lines lines, const TableLayout& layout, std::size_t i) {
   Fields first, second, third;
   split_table_fields(lines[i], layout.delimiter, first);
   int number = first.empty() || first.front() != "0" ? 1 : 0;
@@ -164,7 +164,7 @@ bool numbers_columns(const std::vector<std::string_view>& lines, const TableLayo
 enum class Kind { text, row, other };  // other: numbers that are no row of this table
 
 // Puts every row into a block.
-void find_blocks(const std::vector<std::string_view>& lines, std::uint64_t most_bad, TableLayout& layout) {
+void find_blocks(Lines lines, std::uint64_t most_bad, TableLayout& layout) {
   // Lines of one kind in sequence.
   struct Run {
     Kind kind = Kind::text;
@@ -294,7 +294,7 @@ UnitCount count_units(const Fields& fields) {
 
 // Text files of LabVIEW have the units of the columns above the table and, if the table has no times, the interval and
 // the first time of each channel.
-void read_labview_head(const std::vector<std::string_view>& lines, std::size_t first, TableLayout& layout) {
+void read_labview_head(Lines lines, std::size_t first, TableLayout& layout) {
   Fields fields;
   bool times = true;
   const auto numbers = [&] {
@@ -326,8 +326,7 @@ bool is_row(const TableLayout& layout, std::string_view line, Fields& fields) {
          (shape.fields == layout.fields || (shape.fields > layout.fields && shape.is_row()));
 }
 
-Result<TableLayout> find_table_layout(const std::vector<std::string_view>& lines, std::optional<char> given_decimal,
-                                      std::uint64_t most_bad) {
+Result<TableLayout> find_table_layout(Lines lines, std::optional<char> given_decimal, std::uint64_t most_bad) {
   Marks best;
   for (const Delimiter& delimiter : kDelimiters) {
     for (const char decimal : {'.', ','}) {
@@ -350,7 +349,7 @@ Result<TableLayout> find_table_layout(const std::vector<std::string_view>& lines
   return layout;
 }
 
-void find_table_header(const std::vector<std::string_view>& lines, std::size_t first, TableLayout& layout) {
+void find_table_header(Lines lines, std::size_t first, TableLayout& layout) {
   // The nearest line of each kind: with names of at least two roles; the same, but without one of each column; with
   // any words; of units alone.
   constexpr std::size_t named = 0, misfit = 1, words = 2, units = 3, kinds = 4;

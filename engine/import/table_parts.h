@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -35,6 +36,7 @@ struct Delimiter {
 inline constexpr std::array kDelimiters = {Delimiter{"tab", "\t"}, Delimiter{"semicolon", ";"}, Delimiter{"bar", "|"},
                                            Delimiter{"comma", ","}, Delimiter{"blanks", " \t"}};
 using Fields = std::vector<std::string_view>;
+using Lines = std::span<const std::string_view>;
 // The fields of one line without blanks and quotes around them. `fields` is replaced; empty fields at the end of the
 // line are omitted. Returns the number of fields with these.
 std::size_t split_table_fields(std::string_view line, const Delimiter& delimiter, Fields& fields);
@@ -115,13 +117,12 @@ struct TableLayout {
 // being one, then the one with the most numbers. Then every line is put into a block of rows. A line of text between
 // rows ends a block, unless `most_bad` more lines may be left out. `given_decimal`: the decimal mark if the user has
 // given it. Errors (without the file's name): no rows of numbers; a comma or point that may be either mark.
-Result<TableLayout> find_table_layout(const std::vector<std::string_view>& lines, std::optional<char> given_decimal,
-                                      std::uint64_t most_bad);
+Result<TableLayout> find_table_layout(Lines lines, std::optional<char> given_decimal, std::uint64_t most_bad);
 // Whether a line is a row of the table, perhaps damaged, by its numbers.
 bool is_row(const TableLayout& layout, std::string_view line, Fields& fields);
 // Finds the lines of names and of units shortly above the row `first`, and sets them in `layout`. Preferred is a line
 // that names at least two of time, position and force (boards print their status below the header).
-void find_table_header(const std::vector<std::string_view>& lines, std::size_t first, TableLayout& layout);
+void find_table_header(Lines lines, std::size_t first, TableLayout& layout);
 
 // Columns (column_roles.cpp). ----------------------------------------------------------------------------------------
 
