@@ -23,6 +23,10 @@ constexpr double kSwappedSteps = 3.0;
 // Rows alternate between series where those that are so many apart differ by so much less than neighbours.
 constexpr std::size_t kMostSeries = 8;
 constexpr double kSeriesDifference = 3.0;
+// With more unreadable rows than one in so many, or more cells that have digits and are no numbers, leaving rows out is
+// no reading of the table.
+constexpr std::uint64_t kMostBad = 4;
+constexpr std::uint64_t kOtherForms = 2;
 // Two channels are not resampled where the interpolation of the slower one errs by more than this share of its range.
 constexpr double kInterpolationShare = 0.01;
 // The difference of two durations of one recording.
@@ -567,9 +571,11 @@ class Importer {
     for (double& time : own_s_) time *= to_si_[0];
     if (number_[0] == 0) own_s_.assign(slots_.size(), std::nan(""));
     for (const std::size_t role : {1u, 2u}) values_[role] = values_of(role, cells_of(number_[role]));
-    const bool two_clocks = has_two_clocks();  // one channel may have fewer values than the other
-    std::uint64_t unreadable = 0;
-    std::size_t first_bad = texts_ > 0 ? first_text_ : lines_.size() + 1, bad_role = 0;
+    const bool two_clocks = has_two_clocks();       // one channel may have fewer values than the other
+    std::uint64_t unreadable = 0, other_forms = 0;  // cells with digits, but no numbers: "(0.1)", "0.1-"
+    std::size_t first_bad = texts_ > 0 ? first_text_ : lines_.size() + 1;
+    std::string fault;
+    Fields fields;
     for (std::size_t i = 0; i < slots_.size(); ++i) {
       Slot& slot = slots_[i];
       const std::array finite{no_clock_ || std::isfinite(own_s_[i]), std::isfinite(values_[1][i]),
@@ -578,25 +584,25 @@ class Importer {
       if (slot.good || !slot.is_row || two_clocks) continue;
       ++unreadable;
       leave_out("unreadable", slot.line);
-      if (slot.line > first_bad) continue;
+      const std::size_t number = number_[!finite[1] ? 1 : !finite[2] ? 2 : 0];
+      split_table_fields(lines_[slot.line - 1], layout_.delimiter, fields);
+      const std::string_view cell = number > fields.size() ? "" : fields[number - 1];
+      if (!is_empty(cell) && cell.find_first_of("0123456789") != std::string_view::npos) ++other_forms;
+      if (slot.line > first_bad || !fault.empty()) continue;
       first_bad = slot.line;
-      bad_role = !finite[1] ? 1 : !finite[2] ? 2 : 0;
+      fault = "found " + (cell.empty() ? "an empty field" : '"' + printable(cell) + '"') + " in column " +
+              std::to_string(number) + quoted_name(number) + ", expected a number; repair the value";
     }
     const std::uint64_t bad = texts_ + unreadable;
     const bool none = std::ranges::none_of(slots_, &Slot::good) && !two_clocks;
     if (!none && bad <= request_.skip_bad_rows) return {};
-    std::string fault =
-        "found \"" + printable(lines_[first_bad - 1]) + "\", expected a row of " + count_of(layout_.fields, "field");
-    if (first_bad != first_text_) {
-      Fields fields;
-      split_table_fields(lines_[first_bad - 1], layout_.delimiter, fields);
-      const std::string_view cell = number_[bad_role] > fields.size() ? "" : fields[number_[bad_role] - 1];
-      fault = "found " + (cell.empty() ? "an empty field" : '"' + printable(cell) + '"') + " in column " +
-              std::to_string(number_[bad_role]) + quoted_name(number_[bad_role]) +
-              ", expected a number; repair the value, or leave the row out";
-    }
+    if (fault.empty())
+      fault =
+          "found \"" + printable(lines_[first_bad - 1]) + "\", expected a row of " + count_of(layout_.fields, "field");
     if (none) return fail_at(first_bad, fault + "; no row has both position and force");
-    return fail_at(first_bad, fault,
+    // Where many cells have a form of their own, the others alone are another recording.
+    if (other_forms > kOtherForms || kMostBad * bad > slots_.size()) return fail_at(first_bad, fault);
+    return fail_at(first_bad, fault + (first_bad == first_text_ ? "" : ", or leave the row out"),
                    {{"--skip-bad-rows " + std::to_string(bad),
                      "without " + count_of(bad, "such row") + "; the other rows keep their times"}});
   }
@@ -632,7 +638,8 @@ class Importer {
       parts.insert(parts.begin(), {"--columns time=" + std::to_string(other),
                                    "the times of \"" + printable(columns_[other - 1].header) + '"'});
     const double rate_Hz = static_cast<double>(slots_.size() - 1) / std::max(last_s, step_s);
-    if (!restarts) parts.insert(parts.begin(), {"--rate " + short_number(rate_Hz), "if the rows are evenly spaced"});
+    if (!restarts && rate_in_range(1.0 / rate_Hz))
+      parts.insert(parts.begin(), {"--rate " + short_number(rate_Hz), "if the rows are evenly spaced"});
     return fail_at(first_back,
                    "found a time " + short_number(most_s) + " s before that of the row above" +
                        quoted_name(number_[0]) + ", expected later times in every row; " +

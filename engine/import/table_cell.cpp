@@ -83,13 +83,15 @@ bool skip_days(std::string_view& text, std::int64_t& days) {
   return true;
 }
 
-// "Z", "UTC", "+01:00", "-0500"
-bool is_time_zone(std::string_view text) {
-  if (text.empty() || text == "Z" || text == "UTC") return true;
+// "Z", "UTC", "+01:00", "-0500"; the seconds before UTC.
+std::optional<std::int64_t> parse_time_zone(std::string_view text) {
+  if (text.empty() || text == "Z" || text == "UTC") return 0;
+  const std::int64_t sign = text.front() == '-' ? -1 : 1;
   int hours = 0, minutes = 0;
-  if (!skip_one_of(text, "+-") || !parse_digits(text, 2, hours)) return false;
+  if (!skip_one_of(text, "+-") || !parse_digits(text, 2, hours)) return std::nullopt;
   skip_one_of(text, ":");
-  return text.empty() || (parse_digits(text, 2, minutes) && text.empty());
+  if (!text.empty() && (!parse_digits(text, 2, minutes) || !text.empty())) return std::nullopt;
+  return sign * (3600 * hours + 60 * minutes);
 }
 
 }  // namespace
@@ -199,7 +201,9 @@ std::optional<Time> parse_clock(std::string_view text, bool day_first) {
     if (half == "am" && first == 12) time.whole -= kDay_s / 2;
     text.remove_prefix(2);
   }
-  return is_time_zone(trimmed(text)) ? std::optional(time) : std::nullopt;  // the same in every row
+  const auto zone_s = parse_time_zone(trimmed(text));
+  time.whole -= zone_s.value_or(0);
+  return zone_s ? std::optional(time) : std::nullopt;
 }
 
 }  // namespace
