@@ -46,37 +46,26 @@ LineShape shape_of(std::string_view line, const Delimiter& delimiter, char decim
   return shape;
 }
 
-// One combination of separator and decimal mark.
-struct Marks {
-  Delimiter delimiter;
-  char decimal = '.';
-  // In the longest run of rows; mangled fields begin like a number and are none, which indicates a wrong combination.
-  std::size_t numbers = 0, mangled = 0;
-
-  bool better_than(const Marks& other) const {
-    if ((mangled == 0) != (other.mangled == 0)) return mangled == 0;
-    return numbers > other.numbers;
-  }
-};
-
-Marks read_as(Lines lines, const Delimiter& delimiter, char decimal) {
-  Marks best{delimiter, decimal}, run = best;
+// How well a separator and a decimal mark fit: whether no field begins like a number without being one, and the numbers
+// in the longest run of rows.
+std::pair<bool, std::size_t> fit_of(Lines lines, const Delimiter& delimiter, char decimal) {
+  std::pair<std::size_t, std::size_t> best, run;  // numbers, and the fields that begin like one and are none
   Fields fields;
   for (std::size_t i = 0; i < std::min(lines.size(), kSampleLines); ++i) {
     if (trimmed(lines[i]).empty()) continue;
     const LineShape shape = shape_of(lines[i], delimiter, decimal, fields);
-    if (!shape.is_row()) run = {delimiter, decimal};
+    if (!shape.is_row()) run = {};
     if (!shape.is_row()) continue;
-    run.numbers += shape.numbers + shape.missing;
-    run.mangled += static_cast<std::size_t>(std::ranges::count_if(fields, [&](std::string_view field) {
+    run.first += shape.numbers + shape.missing;
+    run.second += static_cast<std::size_t>(std::ranges::count_if(fields, [&](std::string_view field) {
       return field.find_first_of("0123456789") < 2 &&
              field.find_first_not_of("0123456789.,;+-eE \t") == std::string_view::npos &&
              std::ranges::count(field, '-') < 2 &&  // of a date
              !parse_table_cell(field, decimal) && !is_of_a_clock(field) && !is_missing_value(field);
     }));
-    if (run.numbers > best.numbers) best = run;
+    if (run.first > best.first) best = run;
   }
-  return best;
+  return {best.second == 0, best.first};
 }
 
 // Refuses numbers whose decimal mark may be one of thousands in every cell: "1,234", but not "0,123" or "1,5"; points
@@ -275,21 +264,15 @@ bool is_names_row(const Fields& fields) {
          }) >= 2;
 }
 
-struct UnitCount {
-  std::size_t known = 0;  // of time, length or force
-  std::size_t others = 0, words = 0;
-
-  bool decides() const { return known > 0 && known + others >= 2 && known + others > words; }
-};
-
-UnitCount count_units(const Fields& fields) {
-  UnitCount count;
+// Whether most fields of a line are units, at least one of them of time, length or force; `few`: or two of these.
+bool is_units_row(const Fields& fields, bool few) {
+  std::size_t known = 0, others = 0, words = 0;
   for (const std::string_view field : fields) {
     if (field.empty() || field == "-" || field == "[]" || field == "[-]") continue;
     const bool bracketed = field.size() > 2 && (field.front() == '[' || field.front() == '(');
-    ++(find_unit(field) ? count.known : bracketed || is_other_unit(field) ? count.others : count.words);
+    ++(find_unit(field) ? known : bracketed || is_other_unit(field) ? others : words);
   }
-  return count;
+  return (known > 0 && known + others >= 2 && known + others > words) || (few && known >= 2);
 }
 
 // Text files of LabVIEW have the units of the columns above the table and, if the table has no times, the interval and
@@ -327,20 +310,23 @@ bool is_row(const TableLayout& layout, std::string_view line, Fields& fields) {
 }
 
 Result<TableLayout> find_table_layout(Lines lines, std::optional<char> given_decimal, std::uint64_t most_bad) {
-  Marks best;
+  TableLayout layout;
+  std::pair<bool, std::size_t> best;
   for (const Delimiter& delimiter : kDelimiters) {
     for (const char decimal : {'.', ','}) {
       if (given_decimal && *given_decimal != decimal) continue;
-      const Marks marks = read_as(lines, delimiter, decimal);
-      if (marks.numbers > 0 && (best.numbers == 0 || marks.better_than(best))) best = marks;
+      const auto fit = fit_of(lines, delimiter, decimal);
+      if (fit.second == 0 || !(fit > best)) continue;
+      best = fit;
+      layout.delimiter = delimiter;
+      layout.decimal = decimal;
     }
   }
   const std::size_t tried = std::min(lines.size(), kSampleLines);
   const Error none{"found no rows of numbers in the first " + std::to_string(tried) +
                    (tried == 1 ? " line" : " lines") +
                    ", expected a table with columns of time, position and force; export the recording as CSV"};
-  if (best.numbers == 0) return none;
-  TableLayout layout{best.delimiter, best.decimal};
+  if (best.second == 0) return none;
   measure_rows(lines, layout);
   find_blocks(lines, most_bad, layout);
   if (layout.blocks.empty()) return none;
@@ -371,12 +357,11 @@ void find_table_header(Lines lines, std::size_t first, TableLayout& layout) {
     const NamedRoles roles = named_roles(names);
     // Names beyond the columns are those of remarks, but not of a role.
     const bool fits = split && std::ranges::none_of(roles.column, [&](auto column) { return column > layout.widest; });
-    const UnitCount count = count_units(names);
     const bool below = line[named] == 0, names_row = is_names_row(names), two_roles = roles.count >= kNamedRoles;
-    const std::size_t kind = fits && (count.decides() || (count.known >= 2 && roles.count == 0 && below)) ? units
-                             : names_row && two_roles   ? (fits ? named : misfit)
-                             : names_row && fits && own ? words
-                                                        : kinds;
+    const std::size_t kind = fits && is_units_row(names, roles.count == 0 && below) ? units
+                             : names_row && two_roles                               ? (fits ? named : misfit)
+                             : names_row && fits && own                             ? words
+                                                                                    : kinds;
     if (kind == named && line[named] > 0 && names != fields[named]) layout.rival = i + 1;
     const LineShape shape = shape_of(lines[i], layout.delimiter, layout.decimal, row);
     if (below && shape.numbers >= shape.clocks + 2 && shape.fields >= layout.fields) numbers = i + 1;

@@ -14,8 +14,7 @@
 
 namespace palpate {
 
-// Text (table_text.cpp). ---------------------------------------------------------------------------------------------
-
+// Text (table_text.cpp).
 struct ForeignText {
   std::string text;  // UTF-8 without byte order mark; minus signs and blanks of Unicode are those of ASCII
   std::string_view encoding = "UTF-8";  // of the file: UTF-8, Latin-1 or UTF-16
@@ -41,8 +40,7 @@ using Lines = std::span<const std::string_view>;
 // line are omitted. Returns the number of fields with these.
 std::size_t split_table_fields(std::string_view line, const Delimiter& delimiter, Fields& fields);
 
-// Cells (table_cell.cpp). --------------------------------------------------------------------------------------------
-
+// Cells (table_cell.cpp).
 // Whether `text` is a number, which is then in `value`: "0.5", "-1,25e-3", "+3", "1.5D+00"; also with unambiguous
 // thousands marks: the other mark, an apostrophe or a blank, in groups of three, followed by the decimal mark or
 // repeated ("1,234.5", "1.234.567"). NaN and infinity are not numbers.
@@ -76,8 +74,7 @@ struct ColumnTimes {
 // cell that is no time, and what to write instead.
 Result<ColumnTimes> read_times(const Fields& cells, char decimal);
 
-// Units (units.cpp). -------------------------------------------------------------------------------------------------
-
+// Units (units.cpp).
 // Whether `list`, words separated by blanks, contains this word.
 bool is_word_of(std::string_view list, std::string_view word);
 // Whether `text` is a unit of another quantity or a word for a number without a unit: "%", "MPa", "mm/s", "cycles".
@@ -87,15 +84,14 @@ bool is_prefixed_unit(std::string_view text);
 // The size in volts of the unit in `text`, "V" or "mV" in any common spelling; 0: no voltage.
 double volts_of(std::string_view text);
 
-// Blocks of rows, and their header (table_layout.cpp). ---------------------------------------------------------------
-
+// Blocks of rows, and their header (table_layout.cpp).
 // A run of rows of numbers.
 struct RowBlock {
   std::size_t begin = 0, end = 0;  // lines
   std::size_t rows = 0, fields = 0;
 };
 struct TableLayout {
-  Delimiter delimiter;
+  Delimiter delimiter{};
   char decimal = '.';
   std::size_t fields = 0;      // of a row, empty ones included
   std::size_t columns = 0;     // of a row; empty cells at its end do not count
@@ -124,8 +120,7 @@ bool is_row(const TableLayout& layout, std::string_view line, Fields& fields);
 // that names at least two of time, position and force (boards print their status below the header).
 void find_table_header(Lines lines, std::size_t first, TableLayout& layout);
 
-// Columns (column_roles.cpp). ----------------------------------------------------------------------------------------
-
+// Columns (column_roles.cpp).
 struct NameAndUnit {
   std::string name{};           // without the unit
   std::optional<Unit> unit{};   // when it is known
