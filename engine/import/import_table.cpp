@@ -107,6 +107,8 @@ class Importer {
   std::string quoted_name(std::size_t number) const {
     return layout_.names.empty() ? "" : " \"" + printable(columns_[number - 1].header) + "\"";
   }
+  // 'column 2 "Weg [mm]"'
+  std::string column_name(std::size_t number) const { return "column " + std::to_string(number) + quoted_name(number); }
   // 'the position "Weg [mm]"'
   std::string the_role(std::size_t role) const {
     return "the " + std::string(kRoleNames[role]) + quoted_name(number_[role]);
@@ -365,16 +367,16 @@ class Importer {
       const std::vector<std::string> values(
           column.values.begin(), column.values.begin() + std::min<std::ptrdiff_t>(3, std::ssize(column.values)));
       if (alternates && (is_text || identifies(column)))
-        return refuse(column.values.size(), "column " + std::to_string(i + 1) + quoted_name(i + 1) + " (" +
-                                                joined(values) + (column.values.size() > 3 ? ", ..." : "") + ")");
+        return refuse(column.values.size(),
+                      column_name(i + 1) + " (" + joined(values) + (column.values.size() > 3 ? ", ..." : "") + ")");
       if (!identifies(column) || alternates || request_.rows) continue;
       const Fields cells = cells_of(i + 1);
       std::vector<Reading> parts = parts_of([&](std::size_t last, std::size_t k) { return cells[k] != cells[last]; },
                                             [&](std::size_t k) { return !is_empty(cells[k]); },
                                             [&](std::size_t k) { return std::string(cells[k]); });
       parts.push_back({rows_option({block_.begin + 1, block_.end}), "all as one recording"});
-      return fail("found rows of " + std::to_string(parts.size() - 1) + " series, by column " + std::to_string(i + 1) +
-                      quoted_name(i + 1) + ", expected one; choose the rows",
+      return fail("found rows of " + std::to_string(parts.size() - 1) + " series, by " + column_name(i + 1) +
+                      ", expected one; choose the rows",
                   parts);
     }
     for (const std::size_t role : {1u, 2u}) {
@@ -472,9 +474,8 @@ class Importer {
       return {};
     }
     if (!parts.foreign_unit.empty() || (unit && role > 0))
-      return fail_at(layout_.header, "found the unit \"" + in_header + "\" in column " + std::to_string(number) +
-                                         quoted_name(number) + ", expected a unit of " + kQuantities[role] + " (" +
-                                         unit_names(quantity) +
+      return fail_at(layout_.header, "found the unit \"" + in_header + "\" in " + column_name(number) +
+                                         ", expected a unit of " + kQuantities[role] + " (" + unit_names(quantity) +
                                          "); convert the column, choose another with --columns " + kRoleNames[role] +
                                          "=NAME, or give the unit of the numbers with --units");
     return fail("found no unit of " + the_role(role) + ", expected one of " + unit_names(quantity) +
@@ -590,8 +591,8 @@ class Importer {
       if (!is_empty(cell) && cell.find_first_of("0123456789") != std::string_view::npos) ++other_forms;
       if (slot.line > first_bad || !fault.empty()) continue;
       first_bad = slot.line;
-      fault = "found " + (cell.empty() ? "an empty field" : '"' + printable(cell) + '"') + " in column " +
-              std::to_string(number) + quoted_name(number) + ", expected a number; repair the value";
+      fault = "found " + (cell.empty() ? "an empty field" : '"' + printable(cell) + '"') + " in " +
+              column_name(number) + ", expected a number; repair the value";
     }
     const std::uint64_t bad = texts_ + unreadable;
     const bool none = std::ranges::none_of(slots_, &Slot::good) && !two_clocks;
@@ -602,9 +603,14 @@ class Importer {
     if (none) return fail_at(first_bad, fault + "; no row has both position and force");
     // Where many cells have a form of their own, the others alone are another recording.
     if (other_forms > kOtherForms || kMostBad * bad > slots_.size()) return fail_at(first_bad, fault);
-    return fail_at(first_bad, fault + (first_bad == first_text_ ? "" : ", or leave the row out"),
-                   {{"--skip-bad-rows " + std::to_string(bad),
-                     "without " + count_of(bad, "such row") + "; the other rows keep their times"}});
+    std::vector<Reading> readings{{"--skip-bad-rows " + std::to_string(bad),
+                                   "without " + count_of(bad, "such row") + "; the other rows keep their times"}};
+    if (no_clock_ && texts_ > 0)  // which may separate two recordings
+      std::ranges::copy(parts_of([&](std::size_t last, std::size_t i) { return i > last + 1; },
+                                 [&](std::size_t i) { return slots_[i].is_row; },
+                                 [](std::size_t) { return std::string("rows without a break"); }),
+                        std::back_inserter(readings));
+    return fail_at(first_bad, fault + (first_bad == first_text_ ? "" : ", or leave the row out"), readings);
   }
 
   // Refuses times that go back, hours, minutes and seconds as one number, and clocks that contradict each other.
@@ -788,8 +794,8 @@ class Importer {
       for (double& count : counts) count = (count - first) / step;
       const double gaps = counts.back() - places.back();
       if (!multiples || gaps == 0.0) continue;
-      note("warning: column " + std::to_string(i + 1) + quoted_name(i + 1) + " counts the rows and skips " +
-           short_number(gaps) + " of them: the others keep their times");
+      note("warning: " + column_name(i + 1) + " counts the rows and skips " + short_number(gaps) +
+           " of them: the others keep their times");
       return counts;
     }
     return places;

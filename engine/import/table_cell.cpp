@@ -36,25 +36,20 @@ bool skip_one_of(std::string_view& text, std::string_view any_of) {
   return true;
 }
 
-bool parse_month(std::string_view& text, int& month) {
-  if (parse_digits(text, 2, month)) return true;
-  constexpr std::string_view kMonths = "janfebmaraprmayjunjulaugsepoctnovdec";
-  const std::size_t at = text.size() < 3 ? std::string_view::npos : kMonths.find(lower_ascii(text.substr(0, 3)));
-  if (at == std::string_view::npos || at % 3 != 0) return false;
-  month = static_cast<int>(at / 3) + 1;
-  text.remove_prefix(3);
-  return true;
-}
-
 // Parses and removes a date at the start of `text`.
 bool parse_date(std::string_view& text, bool day_first, std::int64_t& days) {
+  constexpr std::string_view kMonths = "janfebmaraprmayjunjulaugsepoctnovdec";
   std::string_view rest = text;
   std::array<int, 3> parts{};
   if (!parse_digits(rest, 4, parts[0])) return false;
   const std::string_view mark = rest.substr(0, 1);
   if (!skip_one_of(rest, "-/.")) return false;
-  const bool named = !rest.empty() && !is_digit(rest.front());  // the month
-  if (!parse_month(rest, parts[1]) || !skip_one_of(rest, mark) || !parse_digits(rest, 4, parts[2])) return false;
+  const std::size_t month = rest.size() < 3 ? kMonths.size() : kMonths.find(lower_ascii(rest.substr(0, 3)));
+  const bool named = month < kMonths.size() && month % 3 == 0;
+  if (named) rest.remove_prefix(3);
+  if (named) parts[1] = static_cast<int>(month / 3) + 1;
+  if ((!named && !parse_digits(rest, 2, parts[1])) || !skip_one_of(rest, mark) || !parse_digits(rest, 4, parts[2]))
+    return false;
   if (parts[0] < 32) {
     if (!day_first && !named) std::swap(parts[0], parts[1]);
     std::swap(parts[0], parts[2]);
