@@ -136,10 +136,6 @@ std::vector<std::size_t> strongest_columns(const std::vector<Claims>& claims, st
   return best;
 }
 
-std::string flag_for(std::size_t role, const std::string& what) {
-  return std::string("--columns ") + kRoleNames[role] + "=" + what;
-}
-
 // The column that the user means, or a problem.
 std::size_t find_column(const std::vector<ForeignColumn>& columns, std::size_t role, const std::string& wanted,
                         std::string& problem) {
@@ -256,7 +252,8 @@ RoleChoice choose_columns(const std::vector<ForeignColumn>& columns, const RoleR
   }
   const auto offer = [&](std::size_t role, const std::vector<std::size_t>& numbers) {
     for (const std::size_t i : numbers)
-      choice.readings.push_back({flag_for(role, std::to_string(i + 1)), '"' + printable(columns[i].header) + '"'});
+      choice.readings.push_back({std::string("--columns ") + kRoleNames[role] + "=" + std::to_string(i + 1),
+                                 '"' + printable(columns[i].header) + '"'});
   };
   for (std::size_t role = 0; role < kRoles; ++role) {
     std::vector<std::size_t> best = strongest_columns(claims, role);

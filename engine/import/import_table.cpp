@@ -217,19 +217,18 @@ class Importer {
     std::vector<std::string> names;
     for (const std::string_view name : layout_.names) names.push_back('"' + printable(name) + '"');
     const auto [upper, lower] = std::minmax(layout_.header, layout_.rival);
-    const std::string found = layout_.rival > 0 ? "names of columns in this line and in line " + std::to_string(lower)
-                                                : std::to_string(names.size()) + " names (" + joined(names) +
-                                                      "), but the rows from line " + std::to_string(block_.begin + 1) +
-                                                      " have " + count_of(layout_.columns, "field");
-    const bool decided = std::all_of(
-        request_.columns.begin() + (request_.rate_Hz ? 1 : 0), request_.columns.end(),
-        [](const auto& name) { return !name.empty() && name.find_first_not_of("0123456789") == std::string::npos; });
-    if (!decided)
-      return fail_at(layout_.rival > 0 ? upper : layout_.header,
-                     "found " + found +
-                         ", expected one header with a name for each field; correct it, or say which column is which "
-                         "by their numbers: --columns " +
-                         (request_.rate_Hz ? "" : "time=N,") + "position=N,force=N");
+    const bool rival = layout_.rival > 0;
+    const std::string found = rival ? "names of columns in this line and in line " + std::to_string(lower)
+                                    : std::to_string(names.size()) + " names (" + joined(names) +
+                                          "), but the rows from line " + std::to_string(block_.begin + 1) + " have " +
+                                          count_of(layout_.columns, "field");
+    for (std::size_t role = request_.rate_Hz ? 1 : 0; role < kRoles; ++role)
+      if (request_.columns[role].empty() || request_.columns[role].find_first_not_of("0123456789") != std::string::npos)
+        return fail_at(rival ? upper : layout_.header,
+                       "found " + found +
+                           ", expected one header with a name for each field; correct it, or say which "
+                           "column is which by their numbers: --columns " +
+                           (request_.rate_Hz ? "" : "time=N,") + "position=N,force=N");
     note("warning: the header in line " + std::to_string(layout_.header) + " is not used: it has " + found);
     layout_.names.clear();
     layout_.header = 0;
@@ -803,21 +802,20 @@ class Importer {
 
   // Refuses a clock that is so coarse that most rows have the time of the row above.
   Status refuse_coarse_clock() const {
-    std::vector<std::size_t> changes;  // slots
-    std::size_t shared = 0;
+    std::size_t shared = 0, first = 0, last = 0;  // slots at which the time changes
     bool copies = true;
     for (std::size_t i = 1; i < slots_.size(); ++i) {
-      if (own_s_[i] > own_s_[i - 1]) changes.push_back(i);
+      if (own_s_[i] > own_s_[i - 1]) last = i, first = first > 0 ? first : i;
       if (own_s_[i] != own_s_[i - 1]) continue;
       ++shared;
       copies = copies && values_[1][i] == values_[1][i - 1] && values_[2][i] == values_[2][i - 1];
     }
     if (copies || 2 * shared <= slots_.size()) return {};
     std::vector<Reading> readings;
-    if (changes.size() > 1) {
+    if (last > first) {
       // The rows between two changes of the time are known to one row.
-      const auto between = static_cast<double>(changes.back() - changes.front());
-      double rate_Hz = between / (own_s_[changes.back()] - own_s_[changes.front()]);
+      const auto between = static_cast<double>(last - first);
+      double rate_Hz = between / (own_s_[last] - own_s_[first]);
       if (std::abs(std::round(rate_Hz) - rate_Hz) * between <= 2.0 * rate_Hz) rate_Hz = std::round(rate_Hz);
       if (rate_in_range(1.0 / rate_Hz)) readings.push_back({"--rate " + short_number(rate_Hz), "the mean rate"});
     }

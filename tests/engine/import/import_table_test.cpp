@@ -167,6 +167,8 @@ TEST(ImportTable, OneReadingIsImported) {
       {"a minus sign of a typesetter", all_replaced(kPlain, "-", "\xE2\x88\x92"), ""},
       {"exponents of Fortran", table_of(kHeader, "%tD+00,%xD+00,%fD+00"), ""},
       {"lines that end with CR", all_replaced(kPlain, "\n", "\r") + "\n", ""},
+      {"the numbers of columns that are also cells", table_of("", "2,%t,%x,%f"),
+       "--columns time=2,position=3,force=4 --units s,mm,N"},
       {"a constant column", table_of("Time (s),Distance (mm),Height (mm),F (N)", "%t,%x,12.0,%f"), ""},
       {"bars between the fields", all_replaced(kPlain, ",", " | "), ""},
       {"decimal commas between quotes",
@@ -258,6 +260,16 @@ TEST(ImportTable, OtherwiseTheReadingsThatRemainAreCommands) {
        "the "
        "unit of the numbers" +
            command + "--units mN  # the first" + command + "--units N  # the second"},
+      {table_of("t_s,x_mm,a (g)", "%t,%x,%f"), "",
+       "rig.txt: found no column that is clearly the force, expected one column for each of time, position and force; "
+       "the columns are 1 \"t_s\", 2 \"x_mm\", 3 \"a (g)\"" +
+           command + "--columns force=3  # \"a (g)\""},
+      {all_replaced(all_replaced(table_of("Time (s),x_mm,F_N", "14035%t,%x,%f"), "140350.", "140359."), "140351.",
+                    "140400."),
+       "",
+       "rig.txt:102: found a time 40.01 s after that of the row above \"Time (s)\" at a multiple of 100 s, as where "
+       "hours, "
+       "minutes and seconds are written as one number; write seconds, or 14:03:22.010"},
       {kHeader + "\nScale,0.5,2.5\n" + rows_of(0, kRows), "",
        "rig.txt:2: found numbers in a line between the names of the columns and the rows, expected none, because they "
        "may scale the columns; remove the line, or leave it out" +
