@@ -54,8 +54,10 @@ std::pair<bool, std::size_t> fit_of(Lines lines, const Delimiter& delimiter, cha
   for (std::size_t i = 0; i < std::min(lines.size(), kSampleLines); ++i) {
     if (trimmed(lines[i]).empty()) continue;
     const LineShape shape = shape_of(lines[i], delimiter, decimal, fields);
-    if (!shape.is_row()) run = {};
-    if (!shape.is_row()) continue;
+    if (!shape.is_row()) {
+      run = {};
+      continue;
+    }
     run.first += shape.numbers + shape.missing;
     run.second += static_cast<std::size_t>(std::ranges::count_if(fields, [&](std::string_view field) {
       return field.find_first_of("0123456789") < 2 &&

@@ -19,8 +19,7 @@ struct ForeignText {
   std::string text;  // UTF-8 without byte order mark; minus signs and blanks of Unicode are those of ASCII
   std::string_view encoding = "UTF-8";  // of the file: UTF-8, Latin-1 or UTF-16
 };
-// Errors: no such file, not a regular file, unreadable, too large, empty, an Excel workbook or another binary file;
-// each with advice.
+// Errors, each with advice: no such file, not a regular file, unreadable, too large, empty, an archive, binary.
 Result<ForeignText> read_foreign_text(const std::string& path);
 // The lines without their ends: LF, CRLF, or CR alone.
 std::vector<std::string_view> lines_of(std::string_view text);
@@ -53,8 +52,8 @@ struct TableCell {
 std::optional<TableCell> parse_table_cell(std::string_view text, char decimal);
 // "nan", "-", "---", "n/a", "OL": a cell for a missing value.
 bool is_missing_value(std::string_view text);
-// Whether `field` is a date, a time of day or a duration: "2024-03-05T14:03:22.123Z", "05.03.2024 14:03:22.1",
-// "3/5/2024 2:03:22.5 PM", "05-Mar-2024 14:03:22", "14:03:22.123", "03:22.123", "0 days 00:00:01.5".
+// Whether `field` is a date, a time of day or a duration: "2024-03-05T14:03:22.123Z", "3/5/2024 2:03:22.5 PM",
+// "05-Mar-2024 14:03:22", "14:03:22.123", "03:22.123", "0 days 00:00:01.5".
 bool is_of_a_clock(std::string_view field);
 
 // The times of the rows in the unit of the file (of a clock: s), since the first one; NaN where a cell is no time.
@@ -109,15 +108,14 @@ struct TableLayout {
   // From a file of LabVIEW without times: the interval and the first time of each column.
   std::vector<double> steps_s{}, starts_s{};
 };
-// Tries every pair of separator and decimal mark; preferred are those in which no field begins like a number without
-// being one, then the one with the most numbers. Then every line is put into a block of rows. A line of text between
-// rows ends a block, unless `most_bad` more lines may be left out. `given_decimal`: the decimal mark if the user has
-// given it. Errors (without the file's name): no rows of numbers; a comma or point that may be either mark.
+// Tries every pair of separator and decimal mark, then puts every line into a block of rows. A line of text between
+// rows ends a block, unless `most_bad` more lines may be left out. Errors (without the file's name): no rows of
+// numbers; a comma or point that may be either mark, unless the decimal mark is given.
 Result<TableLayout> find_table_layout(Lines lines, std::optional<char> given_decimal, std::uint64_t most_bad);
 // Whether a line is a row of the table, perhaps damaged, by its numbers.
 bool is_row(const TableLayout& layout, std::string_view line, Fields& fields);
-// Finds the lines of names and of units shortly above the row `first`, and sets them in `layout`. Preferred is a line
-// that names at least two of time, position and force (boards print their status below the header).
+// Sets the lines of names and of units shortly above the row `first`. Preferred is a line that names at least two of
+// time, position and force (boards print their status below the header).
 void find_table_header(Lines lines, std::size_t first, TableLayout& layout);
 
 // Columns (column_roles.cpp).
