@@ -21,13 +21,16 @@ constexpr std::string_view kPositionWords =
     "posicion recorrido profundidad \xE4\xBD\x8D\xE7\xA7\xBB height distance gap deflection encoder x y z";
 constexpr std::string_view kForceWords =
     "force f kraft standardkraft pruefkraft normalkraft druckkraft load last fn fx fy fz charge loadcell newton effort "
-    "fuerza carga \xE5\x8A\x9B "
+    "fuerza carga weight mass gewicht masse waage poids peso \xE5\x8A\x9B "
     "\xE8\xBD\xBD\xE8\x8D\xB7 \xE8\x8D\xB7\xE9\x87\x8D";
 // Words of columns that are never a position or a force, whatever else is in the name and whatever the unit.
 constexpr std::string_view kNeverWords =
     "torque moment drehmoment couple mx my mz tx ty tz acceleration accel acc ax ay az beschleunigung gyro angle "
     "winkel "
-    "velocity speed geschwindigkeit vitesse velocidad temperature temp stress spannung";
+    "velocity speed geschwindigkeit vitesse velocidad temperature temp stress spannung peak max error deviation fehler "
+    "abweichung";
+// Units that are also those of an acceleration and of a torque, so that a column needs a word for its role as well.
+constexpr std::string_view kAmbiguousUnits = "g nm";
 // Words of columns that have no role unless they have its unit.
 constexpr std::string_view kOtherWords =
     "voltage current status strain dehnung seq index id frame cycle zyklus comment rate volt orientation unit";
@@ -79,7 +82,7 @@ bool any_word_in(std::string_view list, const std::vector<std::string>& words) {
 
 int name_claim(std::string_view list, const std::string& name, const std::vector<std::string>& words) {
   // The name of an axis alone may be any quantity along it.
-  if (is_word_of(list, name)) return name == "x" || name == "y" || name == "z" ? kOneWord : kWholeName;
+  if (is_word_of(list, name)) return is_word_of("x y z fx fy fz", name) ? kOneWord : kWholeName;
   return any_word_in(list, words) ? kOneWord : 0;
 }
 
@@ -101,7 +104,11 @@ Claims claims_of(const ForeignColumn& column) {
   for (std::size_t role = 0; role < kRoles && unit; ++role)
     if (claims[role] == kWholeName && claims[static_cast<std::size_t>(unit->quantity)] == 0) return {};
   for (std::size_t role = 0; role < kRoles; ++role) {
-    if (unit) claims[role] = static_cast<std::size_t>(unit->quantity) == role ? claims[role] + kRightUnit : 0;
+    const bool right = unit && static_cast<std::size_t>(unit->quantity) == role;
+    if (unit && (!right || (claims[role] == 0 && is_word_of(kAmbiguousUnits, unit->name))))
+      claims[role] = 0;
+    else if (right)
+      claims[role] += kRightUnit;
     // A unit that belongs to no role or is unknown ("Weg [%]"): a last choice, whose unit is then an error.
     const bool volts = role == 2 && volts_of(column.parts.foreign_unit) > 0.0;
     if (!column.parts.foreign_unit.empty() && !volts) claims[role] = std::min(claims[role], 1);
@@ -129,53 +136,76 @@ std::vector<std::size_t> strongest_columns(const std::vector<Claims>& claims, st
   return best;
 }
 
-std::string flag_for(std::size_t role, const std::string& what) {
-  return std::string("--columns ") + kRoleNames[role] + "=" + what;
-}
-
 // The column that the user means, or a problem.
 std::size_t find_column(const std::vector<ForeignColumn>& columns, std::size_t role, const std::string& wanted,
                         std::string& problem) {
-  const std::string lower = lower_ascii(wanted);
   std::vector<std::size_t> found;
-  // The header as it is, else in any case, else without its unit.
-  for (int way = 0; way < 3 && found.empty(); ++way) {
+  // The number, else the header as it is, else in any case, else without its unit.
+  for (std::size_t way = 0; way < 4 && found.empty(); ++way) {
     for (std::size_t i = 0; i < columns.size(); ++i) {
       const std::string& header = columns[i].header;
-      if (way == 0 ? header == wanted : lower_ascii(way == 1 ? header : columns[i].parts.name) == lower)
-        found.push_back(i);
+      const std::array names{std::to_string(i + 1), header, lower_ascii(header), lower_ascii(columns[i].parts.name)};
+      if (names[way] == (way < 2 ? wanted : lower_ascii(wanted))) found.push_back(i);
     }
   }
-  std::size_t number = 0;
-  const auto parsed = std::from_chars(wanted.data(), wanted.data() + wanted.size(), number);
-  const bool is_number = parsed.ec == std::errc() && parsed.ptr == wanted.data() + wanted.size();
-  if (found.empty() && is_number && number >= 1 && number <= columns.size()) found.push_back(number - 1);
   if (found.size() == 1) return found.front();
   problem = found.empty() ? "found no column \"" + printable(wanted) + "\" for the " + kRoleNames[role]
                           : "found " + std::to_string(found.size()) + " columns called \"" + printable(wanted) + '"';
   return 0;
 }
 
+bool is_role_word(const std::string& word) {
+  return is_word_of(kTimeWords, word) || is_word_of(kPositionWords, word) || is_word_of(kForceWords, word);
+}
+
 }  // namespace
 
-// The parts of a header. What follows a mark of units after a word for a role ("Kraft/Stein", "Weg in Furlong") is an
-// unknown unit.
 NameAndUnit header_parts(std::string_view header) {
-  NameAndUnit parts = split_name_and_unit(header);
-  if (parts.unit || !parts.foreign_unit.empty()) return parts;
-  for (const std::string_view mark : {"/", " in ", ","}) {
-    const std::size_t at = header.rfind(mark);
-    if (at == std::string_view::npos) continue;
-    const std::string name = plain_name(trimmed(header.substr(0, at)));
-    const std::string_view last = trimmed(header.substr(at + mark.size()));
-    const std::vector<std::string> words = words_of(last);
-    const auto is_role = [](const std::string& word) {
-      return is_word_of(kTimeWords, word) || is_word_of(kPositionWords, word) || is_word_of(kForceWords, word);
-    };
-    if (!is_role(name) || words.size() != 1 || is_role(words.front())) continue;
-    return {std::string(trimmed(header.substr(0, at))), std::nullopt, std::string(last)};
+  header = trimmed(header);
+  using Parts = std::pair<std::string_view, std::string_view>;  // name, unit
+  const auto split_at = [&](std::size_t at, std::size_t length) {
+    const bool inside = at != std::string_view::npos && at > 0;
+    return inside ? Parts{trimmed(header.substr(0, at)), trimmed(header.substr(at + length))} : Parts{};
+  };
+  // The last pair of brackets; a unit may follow it ("Position (z), mm"). Else a slash, the word "in", or any mark.
+  const auto [name, in_brackets] = split_at(header.find_last_of("[(<{"), 1);
+  const bool bracketed = !name.empty() && in_brackets.find_first_of("])>}") != std::string_view::npos;
+  const std::string_view inside = in_brackets.substr(0, in_brackets.find_first_of("])>}"));
+  std::vector<Parts> splits{bracketed ? Parts{name, trimmed(inside)} : Parts{}, split_at(header.rfind(','), 1)};
+  if (!bracketed)
+    for (const Parts& one : {split_at(header.rfind('/'), 1), split_at(header.rfind(" in "), 4),
+                             split_at(header.find_last_of(" _,;:-."), 1)})
+      splits.push_back(one);
+  for (const auto& [before, text] : splits) {
+    const auto unit = find_unit(text);
+    if (!unit) continue;
+    NameAndUnit parts{std::string(before), unit, "", ""};
+    // A unit before the unit is that of a torque ("M_N_m"), or contradicts it ("force_N (mN)"); a number scales it.
+    const NameAndUnit inner = header_parts(before);
+    const bool other = inner.unit && inner.name != before && inner.unit->name != unit->name;
+    if (other && inner.unit->quantity == unit->quantity) parts.contradicting = inner.unit->name;
+    const bool torque = other && inner.unit->quantity != unit->quantity && inner.unit->quantity != Quantity::time &&
+                        unit->quantity != Quantity::time;
+    const std::string_view last = before.substr(before.find_last_of(' ') + 1);
+    const bool scaled = !bracketed && header[before.size()] == ' ' && last.size() > 1 && last.size() < before.size() &&
+                        last.find_first_not_of("x0123456789.,eE+-") == std::string_view::npos;
+    if (!torque && !scaled) return parts;
+    return {inner.name, std::nullopt,
+            (torque ? std::string(inner.unit->name) : std::string(last)) + " " + std::string(text), ""};
   }
-  return parts;
+  if (bracketed) return {std::string(name), std::nullopt, std::string(trimmed(inside)), ""};
+  // An unknown unit: "Load hN", or what follows a mark after a word for a role ("Kraft/Stein", "Weg in Furlong").
+  if (const auto& [before, text] = split_at(header.find_last_of(" _,;:-./"), 1); is_prefixed_unit(text))
+    return {std::string(before), std::nullopt, std::string(text), ""};
+  for (const std::size_t split : {2u, 3u, 1u}) {
+    const auto& [before, text] = splits[split];
+    const std::vector<std::string> words = words_of(text);
+    if (is_role_word(plain_name(before)) && words.size() == 1 && !is_role_word(words.front()))
+      return {std::string(before), std::nullopt, std::string(text), ""};
+  }
+  // "millis" alone is a name and a unit.
+  const auto whole = header.size() > 1 ? find_unit(header) : std::nullopt;
+  return {std::string(header), whole && whole->quantity == Quantity::time ? whole : std::nullopt, "", ""};
 }
 
 NamedRoles named_roles(const Fields& fields) {
@@ -222,7 +252,8 @@ RoleChoice choose_columns(const std::vector<ForeignColumn>& columns, const RoleR
   }
   const auto offer = [&](std::size_t role, const std::vector<std::size_t>& numbers) {
     for (const std::size_t i : numbers)
-      choice.readings.push_back({flag_for(role, std::to_string(i + 1)), '"' + printable(columns[i].header) + '"'});
+      choice.readings.push_back({std::string("--columns ") + kRoleNames[role] + "=" + std::to_string(i + 1),
+                                 '"' + printable(columns[i].header) + '"'});
   };
   for (std::size_t role = 0; role < kRoles; ++role) {
     std::vector<std::size_t> best = strongest_columns(claims, role);
@@ -235,8 +266,12 @@ RoleChoice choose_columns(const std::vector<ForeignColumn>& columns, const RoleR
       choice.problem =
           has_header ? std::string("found no column that is clearly the ") + kRoleNames[role] : "found no header";
       // What is left when the other roles are taken.
-      for (std::size_t i = 0; i < columns.size(); ++i)
-        if (!excluded[i] && claims[i] == Claims{} && !identifies(columns[i])) best.push_back(i);
+      for (std::size_t i = 0; i < columns.size(); ++i) {
+        const auto& [name, unit, foreign, contradicting] = columns[i].parts;
+        const bool fits = unit ? static_cast<std::size_t>(unit->quantity) == role
+                               : foreign.empty() || (role == 2 && volts_of(foreign) > 0.0);
+        if (fits && !excluded[i] && claims[i] == Claims{} && !identifies(columns[i])) best.push_back(i);
+      }
       if (has_header || role > 0) offer(role, best);
       if (!has_header && role == 0 && columns.size() == 3)
         choice.readings.push_back({"--columns time=1,position=2,force=3", "the usual order"});

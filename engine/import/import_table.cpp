@@ -16,10 +16,17 @@ namespace {
 
 // Fewer rows do not show that a column counts them.
 constexpr std::size_t kCountedRows = 10;
-// A longer list of blocks is cut.
+// A longer list of readings is cut.
 constexpr std::size_t kMostReadings = 12;
 // A time that goes back by more steps begins another recording.
 constexpr double kSwappedSteps = 3.0;
+// Rows alternate between series where those that are so many apart differ by so much less than neighbours.
+constexpr std::size_t kMostSeries = 8;
+constexpr double kSeriesDifference = 3.0;
+// With more unreadable rows than one in so many, or more cells that have digits and are no numbers, leaving rows out is
+// no reading of the table.
+constexpr std::uint64_t kMostBad = 4;
+constexpr std::uint64_t kOtherForms = 2;
 // Two channels are not resampled where the interpolation of the slower one errs by more than this share of its range.
 constexpr double kInterpolationShare = 0.01;
 // The difference of two durations of one recording.
@@ -37,42 +44,31 @@ std::string lines_words(const LineRange& lines) {
                                    : "lines " + std::to_string(lines.first) + " to " + std::to_string(lines.last);
 }
 
-// An error with the readings that remain, each as a command.
+// An error with the readings that remain, each as a command; one without an option is none.
 Error refusal(const std::string& path, const ImportRequest& request, const std::string& text,
               const std::vector<Reading>& readings = {}) {
   std::string message = path + text;
   const std::string command =
       request.command.empty() ? "palpate import " + shell_word(path) + " --out REC.csv" : request.command;
-  for (std::size_t i = 0; i < std::min(readings.size(), kMostReadings); ++i)
-    message += "\n  " + command + " " + readings[i].option + "  # " + readings[i].meaning;
+  for (std::size_t i = 0; i < std::min(readings.size(), kMostReadings); ++i) {
+    const auto& [option, meaning] = readings[i];
+    message += "\n  " + (option.empty() ? meaning : command + " " + option + "  # " + meaning);
+  }
   if (readings.size() > kMostReadings)
     message += "\n  and " + std::to_string(readings.size() - kMostReadings) + " more";
   return Error{message};
 }
 
-// One of two channels, at the times of its own clock.
-struct Channel {
-  std::vector<double> times_s, values;
-  std::vector<std::size_t> slots;
-
-  double step_s() const {
-    return (times_s.back() - times_s.front()) / static_cast<double>(std::max<std::size_t>(times_s.size() - 1, 1));
-  }
-  // Linear interpolation; `after`: the index of the last call, for rising times. `error`: raised to the error that the
-  // second differences of the values beside allow.
-  double at(double time_s, std::size_t& after, double& error) const {
-    while (after + 1 < times_s.size() && times_s[after] < time_s) ++after;
-    const double share = (time_s - times_s[after - 1]) / (times_s[after] - times_s[after - 1]);
-    for (std::size_t i = std::max<std::size_t>(after, 2); i <= std::min(after + 1, values.size() - 1); ++i)
-      error = std::max(error, share * (1.0 - share) * std::abs(values[i] - 2.0 * values[i - 1] + values[i - 2]));
-    return values[after - 1] + share * (values[after] - values[after - 1]);
-  }
-};
+// A reading of a part of the rows, if they are enough for a recording.
+Reading part_reading(const std::string& option, std::size_t rows, const std::string& meaning) {
+  const bool enough = rows >= kRecordingMinimumRows;
+  return {enough ? option : "", meaning + (enough ? "" : ", too few for a recording")};
+}
 
 class Importer {
  public:
-  Importer(const ForeignText& foreign, const std::string& path, const ImportRequest& request)
-      : path_(path), request_(request), lines_(lines_of(foreign.text)), has_arrivals_(foreign.has_arrivals) {
+  Importer(ForeignText foreign, const std::string& path, const ImportRequest& request)
+      : path_(path), request_(request), text_(std::move(foreign.text)), lines_(lines_of(text_)) {
     table_.encoding = foreign.encoding;
   }
 
@@ -88,7 +84,7 @@ class Importer {
  private:
   // A line that is a row in time. Without a clock it may be text, which keeps its place.
   struct Slot {
-    std::size_t line = 0;  // from 1
+    std::uint32_t line = 0;  // from 1
     bool is_row = true, good = true;
   };
 
@@ -111,19 +107,30 @@ class Importer {
   std::string quoted_name(std::size_t number) const {
     return layout_.names.empty() ? "" : " \"" + printable(columns_[number - 1].header) + "\"";
   }
-  static Reading lines_reading(const LineRange& part, const std::string& meaning) {
-    return {"--rows " + std::to_string(part.first) + "-" + std::to_string(part.last), meaning};
+  // 'column 2 "Weg [mm]"'
+  std::string column_name(std::size_t number) const { return "column " + std::to_string(number) + quoted_name(number); }
+  // 'the position "Weg [mm]"'
+  std::string the_role(std::size_t role) const {
+    return "the " + std::string(kRoleNames[role]) + quoted_name(number_[role]);
+  }
+  static std::string rows_option(const LineRange& part) {
+    return "--rows " + std::to_string(part.first) + "-" + std::to_string(part.last);
   }
   // The lines of each part of the table: a new one begins where `differs(last slot, slot)`.
   template <typename Differs, typename Counts, typename Meaning>
   std::vector<Reading> parts_of(const Differs& differs, const Counts& counts, const Meaning& meaning) const {
     std::vector<Reading> parts;
-    std::size_t first = slots_.size(), last = first;
-    const auto end = [&] { parts.push_back(lines_reading({slots_[first].line, slots_[last].line}, meaning(last))); };
+    std::size_t first = 0, last = 0, rows = 0;
+    const auto end = [&] {
+      const LineRange lines{slots_[first].line, slots_[last].line};
+      parts.push_back(
+          part_reading(rows_option(lines), rows, rows < kRecordingMinimumRows ? lines_words(lines) : meaning(last)));
+      rows = 0;
+    };
     for (std::size_t i = 0; i < slots_.size(); ++i) {
       if (!counts(i)) continue;
-      if (last < i && differs(last, i)) end(), first = i;
-      first = std::min(first, i);
+      if (rows > 0 && differs(last, i)) end();
+      if (rows++ == 0) first = i;
       last = i;
     }
     end();
@@ -132,16 +139,17 @@ class Importer {
   // The cells of a column in every slot.
   Fields cells_of(std::size_t number) const {
     Fields cells, fields;
+    cells.reserve(slots_.size());
     for (const Slot& slot : slots_) {
       if (slot.is_row) split_table_fields(lines_[slot.line - 1], layout_.delimiter, fields);
       cells.push_back(slot.is_row && number > 0 && number <= fields.size() ? fields[number - 1] : std::string_view());
     }
     return cells;
   }
-  // The plain numbers of a column; NaN where there is none.
+  // The plain numbers of a column; NaN where there is none. Without a column empty.
   std::vector<double> numbers_of(std::size_t number) const {
-    std::vector<double> numbers(slots_.size(), std::nan(""));
     const Fields cells = number > 0 ? cells_of(number) : Fields();
+    std::vector<double> numbers(cells.size(), std::nan(""));
     for (std::size_t i = 0; i < cells.size(); ++i) {
       double value = 0.0;
       if (parse_table_number(cells[i], layout_.decimal, value)) numbers[i] = value;
@@ -156,9 +164,10 @@ class Importer {
       before = std::min<std::size_t>(request_.rows->first - 1, lines_.size());
       after = std::max(before, std::min<std::size_t>(request_.rows->last, lines_.size()));
     }
-    auto layout = find_table_layout(
-        {lines_.begin() + static_cast<std::ptrdiff_t>(before), lines_.begin() + static_cast<std::ptrdiff_t>(after)},
-        request_.decimal, request_.skip_bad_rows);
+    const auto begin = lines_.begin();
+    auto layout =
+        find_table_layout({begin + static_cast<std::ptrdiff_t>(before), begin + static_cast<std::ptrdiff_t>(after)},
+                          request_.decimal, request_.skip_bad_rows);
     if (!layout) return fail(layout.error().message);
     layout_ = std::move(*layout);
     std::vector<Reading> readings;
@@ -169,9 +178,9 @@ class Importer {
       if (!readings.empty())
         for (std::size_t i = block.begin; !trimmed(lines_[i - 1]).empty() && i > end; --i) ++between;
       end = block.end;
-      readings.push_back({"--block " + std::to_string(readings.size() + 1),
-                          lines_words({block.begin + 1, block.end}) + ": " + count_of(block.rows, "row") + " of " +
-                              count_of(block.fields, "field")});
+      readings.push_back(part_reading("--block " + std::to_string(readings.size() + 1), block.rows,
+                                      lines_words({block.begin + 1, block.end}) + ": " + count_of(block.rows, "row") +
+                                          " of " + count_of(block.fields, "field")));
     }
     if (request_.block > readings.size())
       return fail("found " + count_of(readings.size(), "block") + " of rows, expected at least " +
@@ -197,25 +206,29 @@ class Importer {
     return {};
   }
 
-  // Refuses a header that does not determine the columns, unless the user gives their numbers.
+  // Refuses a header that does not determine the columns, unless the user gives their numbers; and numbers below it.
   Status check_header() {
+    if (layout_.numbers_below > 0 && !request_.rows && request_.block == 0)
+      return fail_at(layout_.numbers_below,
+                     "found numbers in a line between the names of the columns and the rows, expected none, because "
+                     "they may scale the columns; remove the line, or leave it out",
+                     {{rows_option({block_.begin + 1, block_.end}), "without this line"}});
     if (!layout_.misfit && layout_.rival == 0) return {};
     std::vector<std::string> names;
     for (const std::string_view name : layout_.names) names.push_back('"' + printable(name) + '"');
     const auto [upper, lower] = std::minmax(layout_.header, layout_.rival);
-    const std::string found = layout_.rival > 0 ? "names of columns in this line and in line " + std::to_string(lower)
-                                                : std::to_string(names.size()) + " names (" + joined(names) +
-                                                      "), but the rows from line " + std::to_string(block_.begin + 1) +
-                                                      " have " + count_of(layout_.columns, "field");
-    const bool decided = std::all_of(
-        request_.columns.begin() + (request_.rate_Hz ? 1 : 0), request_.columns.end(),
-        [](const auto& name) { return !name.empty() && name.find_first_not_of("0123456789") == std::string::npos; });
-    if (!decided)
-      return fail_at(layout_.rival > 0 ? upper : layout_.header,
-                     "found " + found +
-                         ", expected one header with a name for each field; correct it, or say which column is which "
-                         "by their numbers: --columns " +
-                         (request_.rate_Hz ? "" : "time=N,") + "position=N,force=N");
+    const bool rival = layout_.rival > 0;
+    const std::string found = rival ? "names of columns in this line and in line " + std::to_string(lower)
+                                    : std::to_string(names.size()) + " names (" + joined(names) +
+                                          "), but the rows from line " + std::to_string(block_.begin + 1) + " have " +
+                                          count_of(layout_.columns, "field");
+    for (std::size_t role = request_.rate_Hz ? 1 : 0; role < kRoles; ++role)
+      if (request_.columns[role].empty() || request_.columns[role].find_first_not_of("0123456789") != std::string::npos)
+        return fail_at(rival ? upper : layout_.header,
+                       "found " + found +
+                           ", expected one header with a name for each field; correct it, or say which "
+                           "column is which by their numbers: --columns " +
+                           (request_.rate_Hz ? "" : "time=N,") + "position=N,force=N");
     note("warning: the header in line " + std::to_string(layout_.header) + " is not used: it has " + found);
     layout_.names.clear();
     layout_.header = 0;
@@ -223,7 +236,7 @@ class Importer {
   }
 
   // Lists the rows of the block. Without a clock every line is a row in time, also an empty one, unless each row has an
-  // empty line after it.
+  // empty line after it, and a row that was made a comment.
   void list_rows() {
     no_clock_ = request_.rate_Hz || !layout_.steps_s.empty();
     const auto empty = std::count_if(lines_.begin() + static_cast<std::ptrdiff_t>(block_.begin),
@@ -231,16 +244,19 @@ class Importer {
                                      [](std::string_view line) { return trimmed(line).empty(); });
     const bool empty_counts = no_clock_ && static_cast<std::size_t>(empty) + 1 < block_.rows;
     Fields fields;
+    slots_.reserve(block_.end - block_.begin);
     for (std::size_t i = block_.begin; i < block_.end; ++i) {
-      if (trimmed(lines_[i]).empty() && !empty_counts) continue;
-      if (lines_[i].starts_with('#')) {
+      const std::string_view line = lines_[i];
+      if (trimmed(line).empty() && !empty_counts) continue;
+      const bool comment = line.starts_with('#');
+      if (comment && !(no_clock_ && is_row(layout_, line.substr(1), fields))) {
         leave_out("comments", i + 1);
         continue;
       }
-      const bool row = is_row(layout_, lines_[i], fields);
+      const bool row = !comment && is_row(layout_, line, fields);
       if (!row) leave_out("text between the rows", i + 1);
       if (!row && texts_++ == 0) first_text_ = i + 1;
-      if (row || no_clock_) slots_.push_back({i + 1, row});
+      if (row || no_clock_) slots_.push_back({static_cast<std::uint32_t>(i + 1), row});
     }
     for (std::size_t i = block_.end; i < lines_.size() && !is_row(layout_, lines_[i], fields); ++i)
       if (!trimmed(lines_[i]).empty() && layout_.blocks.size() == 1) leave_out("text after the table", i + 1);
@@ -277,7 +293,7 @@ class Importer {
       if (i >= layout_.units.size()) continue;
       const std::string_view text = layout_.units[i];
       const auto unit = find_unit(text), stated = column.parts.unit;
-      if (unit && stated && unit->to_si != stated->to_si) column.other_unit = text;
+      if (unit && stated && unit->to_si != stated->to_si) column.parts.contradicting = unit->name;
       if (unit && !stated) column.parts.unit = unit;
       if (!unit && !stated && text.find_first_not_of("-[]() ") != std::string_view::npos)
         column.parts.foreign_unit = text;
@@ -291,7 +307,7 @@ class Importer {
       const ForeignColumn& main = columns_[i - 1];
       const bool seconds = main.is_clock || (main.is_whole && main.parts.unit && main.parts.unit->name == "s");
       if (unit_s == 0.0 || !columns_[i].is_whole || !seconds) continue;
-      const auto times = read_times(cells_of(i), layout_.decimal);
+      const auto times = read_times(cells_of(i), layout_.decimal);  // of the column before
       bool fraction = times && times->whole, falls = main.constant;
       double last = 0.0;
       for (const double value : numbers_of(i + 1)) {
@@ -315,19 +331,17 @@ class Importer {
     RoleRequest wanted = request_.columns;
     if (fraction_ > 0 && wanted[0].empty() && !request_.rate_Hz) wanted[0] = std::to_string(fraction_ - 1);
     const bool has_header = !layout_.names.empty();
-    const bool by_interval = request_.rate_Hz || !layout_.steps_s.empty();
-    const RoleChoice choice = choose_columns(choices, wanted, has_header, !by_interval);
-    if (!choice.problem.empty()) {
-      const bool no_time = choice.problem.ends_with("the time") || !has_header;
-      if (choice.number[1] == 0 || choice.number[2] == 0 || choice.times.size() < 2 || !wanted[0].empty())
-        return fail(choice.problem + ", expected one column for each of time, position and force" +
-                        (no_time ? ", or --rate HZ if the rows are evenly spaced" : "") + "; the columns are " +
-                        list_columns(columns_),
-                    choice.readings);
-    }
+    const RoleChoice choice = choose_columns(choices, wanted, has_header, !no_clock_);
     number_ = choice.number;
-    for (const std::size_t other : choice.times)
-      if (other != number_[0]) other_times_.push_back(other);
+    const bool two_clocks = number_[1] > 0 && number_[2] > 0 && choice.times.size() > 1 && wanted[0].empty();
+    if (!choice.problem.empty() && !two_clocks)
+      return fail(
+          choice.problem + ", expected one column for each of time, position and force" +
+              (choice.problem.ends_with("the time") || !has_header ? ", or --rate HZ if the rows are evenly spaced"
+                                                                   : "") +
+              "; the columns are " + list_columns(columns_),
+          choice.readings);
+    std::ranges::remove_copy(choice.times, std::back_inserter(other_times_), number_[0]);
     for (std::size_t i = 0; i < columns_.size(); ++i) {
       const std::string& header = columns_[i].header;
       if (header == kColumnNames[3]) velocity_ = i + 1;  // of a recording
@@ -338,53 +352,56 @@ class Importer {
 
   // Refuses rows of several series: those that alternate, and those in sequence, unless the user chose the rows.
   Status refuse_series() {
-    const auto is_role = [&](std::size_t number) {
-      return std::ranges::find(number_, number) != number_.end() || number == fraction_;
+    const auto refuse = [&](std::size_t series, const std::string& found) {
+      return fail("found rows of " + std::to_string(series) + " series that alternate, by " + found +
+                  ", expected one; write the rows of each into a file of its own");
     };
-    const bool repeats = number_[0] > 0 && columns_[number_[0] - 1].changes < 7 * block_.rows / 10;
     for (std::size_t i = 0; i < columns_.size(); ++i) {
       const ForeignColumn& column = columns_[i];
       const bool few = column.values.size() > 1 && column.values.size() < kMostValues;
-      if (is_role(i + 1) || !few || column.is_units) continue;
+      if (std::ranges::count(number_, i + 1) > 0 || i + 1 == fraction_ || !few || column.is_units) continue;
       double number = 0.0;
       const bool is_text = !parse_table_number(column.values.front(), layout_.decimal, number);
       const bool alternates = 3 * column.changes > block_.rows;
-      if (alternates && (is_text || identifies(column) || (repeats && column.is_whole))) {
-        std::vector<std::string> values(column.values.begin(),
-                                        column.values.begin() + std::min<std::ptrdiff_t>(3, std::ssize(column.values)));
-        return fail("found rows of " + std::to_string(column.values.size()) + " series that alternate, by column " +
-                    std::to_string(i + 1) + quoted_name(i + 1) + " (" + joined(values) +
-                    (values.size() < column.values.size() ? ", ..." : "") +
-                    "), expected one; write the rows of each into a file of its own");
+      const std::vector<std::string> values(
+          column.values.begin(), column.values.begin() + std::min<std::ptrdiff_t>(3, std::ssize(column.values)));
+      if (alternates && (is_text || identifies(column)))
+        return refuse(column.values.size(),
+                      column_name(i + 1) + " (" + joined(values) + (column.values.size() > 3 ? ", ..." : "") + ")");
+      if (!identifies(column) || alternates || request_.rows) continue;
+      const Fields cells = cells_of(i + 1);
+      std::vector<Reading> parts = parts_of([&](std::size_t last, std::size_t k) { return cells[k] != cells[last]; },
+                                            [&](std::size_t k) { return !is_empty(cells[k]); },
+                                            [&](std::size_t k) { return std::string(cells[k]); });
+      parts.push_back({rows_option({block_.begin + 1, block_.end}), "all as one recording"});
+      return fail("found rows of " + std::to_string(parts.size() - 1) + " series, by " + column_name(i + 1) +
+                      ", expected one; choose the rows",
+                  parts);
+    }
+    for (const std::size_t role : {1u, 2u}) {
+      const std::vector<double> values = numbers_of(number_[role]);
+      for (std::size_t apart = 2; apart <= kMostSeries; ++apart) {
+        double neighbours = 0.0, series = 0.0;
+        for (std::size_t i = apart; i < values.size(); ++i) {
+          if (!std::isfinite(values[i] + values[i - 1] + values[i - apart])) continue;
+          neighbours += std::abs(values[i] - values[i - 1]);
+          series += std::abs(values[i] - values[i - apart]);
+        }
+        if (neighbours > kSeriesDifference * series)
+          return refuse(apart, the_role(role) + ", which is nearer to that " + std::to_string(apart) +
+                                   " rows above than to that of the row above");
       }
-      if (identifies(column) && !alternates && !request_.rows) return refuse_sequence(i + 1);
     }
     return {};
-  }
-
-  Error refuse_sequence(std::size_t number) const {
-    const Fields cells = cells_of(number);
-    std::vector<Reading> parts = parts_of([&](std::size_t last, std::size_t i) { return cells[i] != cells[last]; },
-                                          [&](std::size_t i) { return !is_empty(cells[i]); },
-                                          [&](std::size_t i) { return std::string(cells[i]); });
-    parts.push_back(lines_reading({block_.begin + 1, block_.end}, "all as one recording"));
-    return fail("found rows of " + std::to_string(parts.size() - 1) + " series, by column " + std::to_string(number) +
-                    quoted_name(number) + ", expected one; choose the rows",
-                parts);
   }
 
   // The unit of each role, from the user, the header, or the rows.
   Status find_units() {
     for (std::size_t role = 0; role < kRoles; ++role) {
-      if (number_[role] == 0) continue;
-      const ForeignColumn& column = columns_[number_[role] - 1];
-      table_.columns[role] = {number_[role], layout_.names.empty() ? "" : column.header};
-      if (!column.other_unit.empty())
-        return fail_at(layout_.header, "found two units of the " + std::string(kRoleNames[role]) +
-                                           quoted_name(number_[role]) + ": " + std::string(column.parts.unit->name) +
-                                           " in the name and " + column.other_unit +
-                                           " in the row of units, expected one; correct the header");
-      if (number_[role] < columns_.size() && columns_[number_[role]].is_units) unit_column_[role] = number_[role] + 1;
+      const std::size_t number = number_[role];
+      if (number == 0) continue;
+      table_.columns[role] = {number, layout_.names.empty() ? "" : columns_[number - 1].header};
+      if (number < columns_.size() && columns_[number].is_units) unit_column_[role] = number + 1;
       const Status status = role == 0 ? find_time_unit() : find_unit_of(role);
       if (!status && (role > 0 || !request_.rate_Hz)) return status;
       if (!status) number_[0] = 0;  // the times are not needed
@@ -398,9 +415,8 @@ class Importer {
   }
 
   std::optional<Unit> given_unit(std::size_t role) const {
-    for (const Unit& given : request_.units)
-      if (given.quantity == static_cast<Quantity>(role)) return given;
-    return std::nullopt;
+    const auto given = std::ranges::find(request_.units, static_cast<Quantity>(role), &Unit::quantity);
+    return given != request_.units.end() ? std::optional(*given) : std::nullopt;
   }
 
   Status find_unit_of(std::size_t role) {
@@ -410,13 +426,17 @@ class Importer {
     const NameAndUnit& parts = columns_[number - 1].parts;
     const std::string in_header = parts.unit ? std::string(parts.unit->name) : printable(parts.foreign_unit);
     const auto given = given_unit(role);
+    if (!parts.contradicting.empty() && !given)
+      return fail_at(layout_.header,
+                     "found two units of " + the_role(role) + ", " + in_header + " and " + parts.contradicting +
+                         ", expected one; correct the header, or give the unit of the numbers",
+                     {{"--units " + in_header, "the first"}, {"--units " + parts.contradicting, "the second"}});
     std::optional<Unit> unit = given ? given : parts.unit;
     const bool fits = unit && unit->quantity == quantity;
     const double volts = role == 2 ? volts_of(parts.foreign_unit) : 0.0;
-    const std::string the_role = "the " + std::string(kRoleNames[role]) + quoted_name(number);
     if (role == 2 && request_.gain_N_per_V && (fits || !unit)) {
       if (parts.unit)
-        note("warning: " + the_role + " is read in V as --gain says, although its header says " + in_header);
+        note("warning: " + the_role(role) + " is read in V as --gain says, although its header says " + in_header);
       use_unit(role, "V", (volts > 0.0 ? volts : 1.0) * *request_.gain_N_per_V);
       return {};
     }
@@ -433,32 +453,31 @@ class Importer {
     for (const std::string& name : units) {
       const auto one = find_unit(name);
       if (one->quantity != quantity || (unit && one->to_si != unit->to_si))
-        return fail("found the unit " + name + " in the rows of " + the_role + ", expected " +
+        return fail("found the unit " + name + " in the rows of " + the_role(role) + ", expected " +
                     (one->quantity != quantity
                          ? std::string("a unit of ") + kQuantities[role]
                          : std::string(unit->name) + ", as " + (given ? "--units" : "the header") + " says") +
                     "; correct the one that is wrong");
     }
     if (!units.empty()) {
-      const bool same = std::ranges::all_of(units, [&](const auto& one) { return one == units.front(); });
+      const bool same = std::ranges::count(units, units.front()) == std::ssize(units);
       use_unit(role, same ? units.front() : "each row's unit", same ? find_unit(units.front())->to_si : 0.0);
       return {};
     }
     if (fits) {
       // A note where the unit of the user contradicts that of the header.
       if (parts.unit ? parts.unit->to_si != unit->to_si : !in_header.empty())
-        note("warning: " + the_role + " is read in " + std::string(unit->name) +
+        note("warning: " + the_role(role) + " is read in " + std::string(unit->name) +
              " as --units says, although its header says " + in_header);
       use_unit(role, unit->name, unit->to_si);
       return {};
     }
     if (!parts.foreign_unit.empty() || (unit && role > 0))
-      return fail_at(layout_.header, "found the unit \"" + in_header + "\" in column " + std::to_string(number) +
-                                         quoted_name(number) + ", expected a unit of " + kQuantities[role] + " (" +
-                                         unit_names(quantity) +
+      return fail_at(layout_.header, "found the unit \"" + in_header + "\" in " + column_name(number) +
+                                         ", expected a unit of " + kQuantities[role] + " (" + unit_names(quantity) +
                                          "); convert the column, choose another with --columns " + kRoleNames[role] +
                                          "=NAME, or give the unit of the numbers with --units");
-    return fail("found no unit of " + the_role + ", expected one of " + unit_names(quantity) +
+    return fail("found no unit of " + the_role(role) + ", expected one of " + unit_names(quantity) +
                 "; add the unit of the numbers: --units " + (role == 1 ? "mm" : "N") +
                 ", with a comma between two units: --units mm,N");
   }
@@ -467,8 +486,7 @@ class Importer {
     auto times = read_times(cells_of(number_[0]), layout_.decimal);
     if (!times) return fail_at(block_.begin + 1, times.error().message);
     times_ = std::move(*times);
-    const bool fractions = fraction_ > 0 && number_[0] + 1 == fraction_;
-    if (fractions) {
+    if (fraction_ > 0 && number_[0] + 1 == fraction_) {
       const double unit_s = fraction_unit_s(columns_[fraction_ - 1]);
       double first = std::nan("");
       const std::vector<double> parts = numbers_of(fraction_);
@@ -477,13 +495,20 @@ class Importer {
         times_.since_first[i] += unit_s * (parts[i] - first);
       }
       times_.measure_steps();
-    }
-    if (fractions || times_.of_a_clock) {
       use_unit(0, times_.of_a_clock ? "clock" : "s", 1.0);
       return {};
     }
     const auto& parts = columns_[number_[0] - 1].parts;
-    if (given_unit(0) || !parts.foreign_unit.empty() || (parts.unit && parts.unit->quantity == Quantity::time))
+    const auto given = given_unit(0), stated = given ? given : parts.unit;
+    if (times_.of_a_clock) {
+      if (stated && stated->quantity == Quantity::time && stated->to_si != 1.0)
+        return fail("found times of a clock in " + the_role(0) + ", expected numbers in " + std::string(stated->name) +
+                        ", as " + (given ? "--units" : "the header") + " says",
+                    given ? std::vector<Reading>() : std::vector<Reading>{{"--units s", "the times of the clock"}});
+      use_unit(0, "clock", 1.0);
+      return {};
+    }
+    if (given || !parts.foreign_unit.empty() || (parts.unit && parts.unit->quantity == Quantity::time))
       return find_unit_of(0);
     // Every unit in which the rate of the rows is possible, and that of a date, if the first time is one in one unit.
     std::vector<Reading> possible, dated;
@@ -493,15 +518,13 @@ class Importer {
       if (!(step > 0.0) || !rate_in_range(step * to_s)) continue;
       const bool common = std::string_view("ns us ms s").find(name) != std::string_view::npos;
       // The rate of a rare unit is a set one, unless the times are rounded or jitter.
-      const bool steady = std::abs(times_.mean_step / step - 1.0) < 1e-3;
-      if (!common && steady && !is_round(rate_Hz)) continue;
+      if (!common && times_.steady && !is_round(1.0 / (times_.plain_step * to_s))) continue;
       possible.push_back({std::string("--units ") + name, short_number(rate_Hz) + " Hz"});
       if (is_date(name, times_.first_cell * to_s)) dated.push_back(possible.back());
     }
     if (dated.size() == 1) possible = dated;
-    const std::string steps = " and steps of " + short_number(step);
     if (possible.size() != 1)
-      return fail("found no unit of the time" + quoted_name(number_[0]) + steps + ", expected one of " +
+      return fail("found no unit of " + the_role(0) + " and steps of " + short_number(step) + ", expected one of " +
                       unit_names(Quantity::time) + "; add it with --units, or --rate HZ if the rows are evenly spaced",
                   possible);
     const auto unit = find_unit(possible.front().option.substr(8));
@@ -544,15 +567,15 @@ class Importer {
 
   // Reads every row. Rows that cannot be read keep their place in time.
   Status read_rows() {
-    for (const double time : times_.since_first) own_s_.push_back(to_si_[0] * time);
+    own_s_ = std::move(times_.since_first);
+    for (double& time : own_s_) time *= to_si_[0];
     if (number_[0] == 0) own_s_.assign(slots_.size(), std::nan(""));
-    std::array<Fields, kRoles> cells;
-    for (const std::size_t role : {1u, 2u}) values_[role] = values_of(role, cells[role] = cells_of(number_[role]));
-    const bool two_clocks = has_two_clocks();  // one channel may have fewer values than the other
-    std::uint64_t unreadable = 0;
+    for (const std::size_t role : {1u, 2u}) values_[role] = values_of(role, cells_of(number_[role]));
+    const bool two_clocks = has_two_clocks();       // one channel may have fewer values than the other
+    std::uint64_t unreadable = 0, other_forms = 0;  // cells with digits, but no numbers: "(0.1)", "0.1-"
     std::size_t first_bad = texts_ > 0 ? first_text_ : lines_.size() + 1;
-    std::string fault = "found \"" + printable(texts_ > 0 ? lines_[first_text_ - 1] : "") + "\", expected a row of " +
-                        count_of(layout_.fields, "field");
+    std::string fault;
+    Fields fields;
     for (std::size_t i = 0; i < slots_.size(); ++i) {
       Slot& slot = slots_[i];
       const std::array finite{no_clock_ || std::isfinite(own_s_[i]), std::isfinite(values_[1][i]),
@@ -561,35 +584,54 @@ class Importer {
       if (slot.good || !slot.is_row || two_clocks) continue;
       ++unreadable;
       leave_out("unreadable", slot.line);
-      if (slot.line > first_bad) continue;
+      const std::size_t number = number_[!finite[1] ? 1 : !finite[2] ? 2 : 0];
+      split_table_fields(lines_[slot.line - 1], layout_.delimiter, fields);
+      const std::string_view cell = number > fields.size() ? "" : fields[number - 1];
+      if (!is_empty(cell) && cell.find_first_of("0123456789") != std::string_view::npos) ++other_forms;
+      if (slot.line > first_bad || !fault.empty()) continue;
       first_bad = slot.line;
-      const std::size_t role = !finite[1] ? 1 : !finite[2] ? 2 : 0;
-      const std::string_view cell = role > 0 ? cells[role][i] : cells_of(number_[0])[i];
-      fault = "found " + (cell.empty() ? "an empty field" : '"' + printable(cell) + '"') + " in column " +
-              std::to_string(number_[role]) + quoted_name(number_[role]) +
-              ", expected a number; repair the value, or leave the row out";
+      fault = "found " + (cell.empty() ? "an empty field" : '"' + printable(cell) + '"') + " in " +
+              column_name(number) + ", expected a number; repair the value";
     }
     const std::uint64_t bad = texts_ + unreadable;
-    if (std::ranges::none_of(slots_, &Slot::good) && !two_clocks)
-      return fail_at(first_bad, fault + "; no row has both position and force");
-    if (bad <= request_.skip_bad_rows) return {};
-    return fail_at(first_bad, fault,
-                   {{"--skip-bad-rows " + std::to_string(bad),
-                     "without " + count_of(bad, "such row") + "; the other rows keep their times"}});
+    const bool none = std::ranges::none_of(slots_, &Slot::good) && !two_clocks;
+    if (!none && bad <= request_.skip_bad_rows) return {};
+    if (fault.empty())
+      fault =
+          "found \"" + printable(lines_[first_bad - 1]) + "\", expected a row of " + count_of(layout_.fields, "field");
+    if (none) return fail_at(first_bad, fault + "; no row has both position and force");
+    // Where many cells have a form of their own, the others alone are another recording.
+    if (other_forms > kOtherForms || kMostBad * bad > slots_.size()) return fail_at(first_bad, fault);
+    std::vector<Reading> readings{{"--skip-bad-rows " + std::to_string(bad),
+                                   "without " + count_of(bad, "such row") + "; the other rows keep their times"}};
+    if (no_clock_ && texts_ > 0)  // which may separate two recordings
+      std::ranges::copy(parts_of([&](std::size_t last, std::size_t i) { return i > last + 1; },
+                                 [&](std::size_t i) { return slots_[i].is_row; },
+                                 [](std::size_t) { return std::string("rows without a break"); }),
+                        std::back_inserter(readings));
+    return fail_at(first_bad, fault + (first_bad == first_text_ ? "" : ", or leave the row out"), readings);
   }
 
-  // Refuses times that go back, and clocks that contradict each other.
+  // Refuses times that go back, hours, minutes and seconds as one number, and clocks that contradict each other.
   Status check_times() {
     if (times_.midnights > 0) note("the clock passes midnight: a day is added from there");
+    const double step_s = to_si_[0] * times_.median_step, first_s = to_si_[0] * times_.first_cell;
     double last_s = 0.0, most_s = 0.0;
     std::size_t first_back = 0;
     for (std::size_t i = 0; i < slots_.size(); ++i) {
       if (!std::isfinite(own_s_[i])) continue;
       if (own_s_[i] < last_s && first_back == 0) first_back = slots_[i].line;
       most_s = std::max(most_s, last_s - own_s_[i]);
+      // 140359.99 is followed by 140400.00, and 145959.99 by 150000.00.
+      const double beyond_s = std::fmod(own_s_[i] - last_s, 4000.0) - 40.0, few_s = kSwappedSteps * step_s;
+      if (!no_clock_ && !times_.of_a_clock && rate_in_range(step_s) && std::abs(beyond_s) < few_s &&
+          std::fmod(first_s + own_s_[i], 100.0) < few_s)
+        return fail_at(slots_[i].line, "found a time " + short_number(own_s_[i] - last_s) +
+                                           " s after that of the row above" + quoted_name(number_[0]) +
+                                           " at a multiple of 100 s, as where hours, minutes and seconds are written "
+                                           "as one number; write seconds, or 14:03:22.010");
       last_s = own_s_[i];
     }
-    const double step_s = to_si_[0] * times_.median_step;
     const bool restarts = most_s > kSwappedSteps * step_s;
     if (first_back == 0 || (!restarts && request_.rate_Hz)) return has_two_clocks() ? Status() : compare_clocks();
     std::vector<Reading> parts = parts_of([&](std::size_t last, std::size_t i) { return own_s_[i] < own_s_[last]; },
@@ -601,7 +643,8 @@ class Importer {
       parts.insert(parts.begin(), {"--columns time=" + std::to_string(other),
                                    "the times of \"" + printable(columns_[other - 1].header) + '"'});
     const double rate_Hz = static_cast<double>(slots_.size() - 1) / std::max(last_s, step_s);
-    if (!restarts) parts.insert(parts.begin(), {"--rate " + short_number(rate_Hz), "if the rows are evenly spaced"});
+    if (!restarts && rate_in_range(1.0 / rate_Hz))
+      parts.insert(parts.begin(), {"--rate " + short_number(rate_Hz), "if the rows are evenly spaced"});
     return fail_at(first_back,
                    "found a time " + short_number(most_s) + " s before that of the row above" +
                        quoted_name(number_[0]) + ", expected later times in every row; " +
@@ -622,16 +665,15 @@ class Importer {
   }
 
   Status compare_clocks() {
-    if (number_[0] == 0 || slots_.empty() || !std::isfinite(own_s_.front()) || !std::isfinite(own_s_.back())) return {};
-    if (!request_.columns[0].empty()) return {};
+    if (number_[0] == 0 || !std::isfinite(own_s_.front()) || !std::isfinite(own_s_.back())) return {};
     for (const std::size_t other : other_times_) {
+      if (!request_.columns[0].empty()) break;
       const ColumnTimes clock = clock_in_s(other);
       const std::vector<double>& seconds = clock.since_first;
-      if (seconds.empty()) continue;
       // A clock with hours and minutes may be that of the arrival; its duration must be that of the times.
       const bool rival = !columns_[other - 1].is_clock || times_.of_a_clock;
       double apart_s = 0.0;
-      for (std::size_t i = 0; i < slots_.size(); ++i)
+      for (std::size_t i = 0; i < seconds.size(); ++i)
         if (std::isfinite(own_s_[i] - seconds[i])) apart_s = std::max(apart_s, std::abs(own_s_[i] - seconds[i]));
       const double limit_s =
           rival ? 0.5 * to_si_[0] * times_.median_step : std::max(kDuration_s, kDurationShare * own_s_.back());
@@ -674,51 +716,59 @@ class Importer {
 
   // Two channels with clocks of their own, on the times of the faster one.
   Status resample() {
-    std::array<Channel, kRoles> channels;
+    struct Point {
+      double time_s, value;
+      std::size_t line;
+    };
+    std::array<std::vector<Point>, kRoles> channels;
+    std::array<double, kRoles> steps_s{};
     const auto clocks = clock_columns();
-    const bool by_interval = !layout_.steps_s.empty();
     for (const std::size_t role : {1u, 2u}) {
-      const ColumnTimes clock = by_interval ? ColumnTimes() : clock_in_s(clocks[role]);
-      const double first_s = by_interval ? lab(layout_.starts_s, role) : clock.first_cell;
-      Channel& channel = channels[role];
-      for (std::size_t i = 0; i < slots_.size(); ++i) {
-        const double time_s = first_s + (by_interval ? static_cast<double>(i) * lab(layout_.steps_s, role)
-                                         : clock.since_first.empty() ? std::nan("")
-                                                                     : clock.since_first[i]);
-        if (!std::isfinite(time_s + values_[role][i])) continue;
-        if (!channel.times_s.empty() && time_s <= channel.times_s.back())
-          return fail_at(slots_[i].line, "found a time of the " + std::string(kRoleNames[role]) +
-                                             " that is not later than that above, expected later times in every row");
-        channel.times_s.push_back(time_s);
-        channel.values.push_back(values_[role][i]);
-        channel.slots.push_back(i);
+      ColumnTimes clock;
+      if (layout_.steps_s.empty()) clock = clock_in_s(clocks[role]);
+      const double first_s = layout_.steps_s.empty() ? clock.first_cell : lab(layout_.starts_s, role);
+      for (std::size_t i = 0; !layout_.steps_s.empty() && i < slots_.size(); ++i)
+        clock.since_first.push_back(static_cast<double>(i) * lab(layout_.steps_s, role));
+      std::vector<Point>& channel = channels[role];
+      for (std::size_t i = 0; i < clock.since_first.size(); ++i) {
+        const Point point{first_s + clock.since_first[i], values_[role][i], slots_[i].line};
+        if (!std::isfinite(point.time_s + point.value)) continue;
+        if (!channel.empty() && point.time_s <= channel.back().time_s)
+          return fail_at(point.line, "found a time of the " + std::string(kRoleNames[role]) +
+                                         " that is not later than that above, expected later times in every row");
+        channel.push_back(point);
       }
-      if (channel.values.size() < 2) return fail("found no values of the " + std::string(kRoleNames[role]));
+      if (channel.size() < 2) return fail("found no values of the " + std::string(kRoleNames[role]));
+      steps_s[role] = (channel.back().time_s - channel.front().time_s) / static_cast<double>(channel.size() - 1);
     }
-    const std::size_t slow = channels[1].step_s() >= channels[2].step_s() ? 1 : 2, fast = 3 - slow;
-    const double begin_s = std::min(channels[1].times_s.front(), channels[2].times_s.front());
+    const std::size_t slow = steps_s[1] >= steps_s[2] ? 1 : 2, fast = 3 - slow;
+    const auto &own = channels[fast], &other = channels[slow];
+    const double begin_s = std::min(own.front().time_s, other.front().time_s);
     std::string found = "found two clocks, with";
     for (const std::size_t role : {1u, 2u})
-      found += std::string(role == 1 ? " a " : " and a ") + kRoleNames[role] + " every " +
-               short_number(channels[role].step_s()) + " s from " +
-               short_number(channels[role].times_s.front() - begin_s) + " s on";
-    const Channel &own = channels[fast], &other = channels[slow];
+      found += std::string(role == 1 ? " a " : " and a ") + kRoleNames[role] + " every " + short_number(steps_s[role]) +
+               " s from " + short_number(channels[role].front().time_s - begin_s) + " s on";
     std::size_t after = 1;
     double error = 0.0;
-    for (std::size_t i = 0; i < own.values.size(); ++i) {
-      const double time_s = own.times_s[i];
-      if (time_s < other.times_s.front() - 1e-9 || time_s > other.times_s.back() + 1e-9) {
-        leave_out(slow == 1 ? "without a position at the time" : "without a force at the time",
-                  slots_[own.slots[i]].line);
+    for (const Point& point : own) {
+      if (point.time_s < other.front().time_s - 1e-9 || point.time_s > other.back().time_s + 1e-9) {
+        leave_out(slow == 1 ? "without a position at the time" : "without a force at the time", point.line);
         continue;
       }
-      const double between = other.at(time_s, after, error);
+      while (after + 1 < other.size() && other[after].time_s < point.time_s) ++after;
+      const Point &from = other[after - 1], &to = other[after];
+      const double share = (point.time_s - from.time_s) / (to.time_s - from.time_s);
+      const double between = from.value + share * (to.value - from.value);
+      // The error of a linear interpolation, from the second differences beside.
+      for (std::size_t i = std::max<std::size_t>(after, 2); i <= std::min(after + 1, other.size() - 1); ++i)
+        error = std::max(
+            error, share * (1.0 - share) * std::abs(other[i].value - 2.0 * other[i - 1].value + other[i - 2].value));
       table_.recording.rows.push_back(
-          {time_s - begin_s, slow == 1 ? between : own.values[i], slow == 1 ? own.values[i] : between});
+          {point.time_s - begin_s, slow == 1 ? between : point.value, slow == 1 ? point.value : between});
     }
-    const auto [low, high] = std::ranges::minmax(other.values);
+    const auto [low, high] = std::ranges::minmax(other, {}, &Point::value);
     const std::string slow_name = kRoleNames[slow];
-    if (error > kInterpolationShare * (high - low))
+    if (error > kInterpolationShare * (high.value - low.value))
       return fail(found + ", expected one, or a " + slow_name +
                   " that is fast enough to be interpolated; export both channels with one interval");
     note("warning: " + found + ": the " + slow_name + " is interpolated at the times of the " + kRoleNames[fast]);
@@ -743,8 +793,8 @@ class Importer {
       for (double& count : counts) count = (count - first) / step;
       const double gaps = counts.back() - places.back();
       if (!multiples || gaps == 0.0) continue;
-      note("warning: column " + std::to_string(i + 1) + quoted_name(i + 1) + " counts the rows and skips " +
-           short_number(gaps) + " of them: the others keep their times");
+      note("warning: " + column_name(i + 1) + " counts the rows and skips " + short_number(gaps) +
+           " of them: the others keep their times");
       return counts;
     }
     return places;
@@ -752,23 +802,22 @@ class Importer {
 
   // Refuses a clock that is so coarse that most rows have the time of the row above.
   Status refuse_coarse_clock() const {
-    std::vector<std::size_t> changes;  // slots
-    std::size_t shared = 0;
+    std::size_t shared = 0, first = 0, last = 0;  // slots at which the time changes
     bool copies = true;
     for (std::size_t i = 1; i < slots_.size(); ++i) {
-      if (own_s_[i] > own_s_[i - 1]) changes.push_back(i);
+      if (own_s_[i] > own_s_[i - 1]) last = i, first = first > 0 ? first : i;
       if (own_s_[i] != own_s_[i - 1]) continue;
       ++shared;
       copies = copies && values_[1][i] == values_[1][i - 1] && values_[2][i] == values_[2][i - 1];
     }
     if (copies || 2 * shared <= slots_.size()) return {};
     std::vector<Reading> readings;
-    if (changes.size() > 1) {
+    if (last > first) {
       // The rows between two changes of the time are known to one row.
-      const auto between = static_cast<double>(changes.back() - changes.front());
-      double rate_Hz = between / (own_s_[changes.back()] - own_s_[changes.front()]);
+      const auto between = static_cast<double>(last - first);
+      double rate_Hz = between / (own_s_[last] - own_s_[first]);
       if (std::abs(std::round(rate_Hz) - rate_Hz) * between <= 2.0 * rate_Hz) rate_Hz = std::round(rate_Hz);
-      readings.push_back({"--rate " + short_number(rate_Hz), "the mean rate"});
+      if (rate_in_range(1.0 / rate_Hz)) readings.push_back({"--rate " + short_number(rate_Hz), "the mean rate"});
     }
     return fail("found the time of the row above" + quoted_name(number_[0]) + " in " + std::to_string(shared) + " of " +
                     std::to_string(slots_.size()) +
@@ -795,6 +844,10 @@ class Importer {
     const std::vector<double> velocities = numbers_of(velocity_), accelerations = numbers_of(acceleration_);
     auto& recording = table_.recording;
     recording.columns = {velocity_ > 0, acceleration_ > 0};
+    // Everything is read: frees the text before the rows are made.
+    lines_ = {};
+    std::string().swap(text_);
+    recording.rows.reserve(slots_.size());
     for (std::size_t i = 0; i < slots_.size(); ++i) {
       if (velocity_ > 0 && std::isnan(velocities[i])) recording.columns = {};
       if (acceleration_ > 0 && std::isnan(accelerations[i])) recording.columns = {};
@@ -804,7 +857,8 @@ class Importer {
         leave_out("with the time of the row above", slots_[i].line);
         continue;
       }
-      recording.rows.push_back({time_s, values_[1][i], values_[2][i], velocities[i], accelerations[i]});
+      recording.rows.push_back({time_s, values_[1][i], values_[2][i], velocity_ > 0 ? velocities[i] : 0.0,
+                                acceleration_ > 0 ? accelerations[i] : 0.0});
     }
     const double seconds = recording.rows.back().time_s, own_s = own_s_.back();
     if (request_.rate_Hz && own_s > 0.0 && std::abs(seconds - own_s) > kDurationShare * own_s)
@@ -835,14 +889,13 @@ class Importer {
     table_.decimal = layout_.decimal == ',' ? "comma" : "point";
     table_.header_line = layout_.header;
     recording.name = printable(std::filesystem::path(path_).stem().string(), std::string::npos);
-    if (has_arrivals_ && number_[0] != 1) note("the times of arrival before each line are not used");
     return {};
   }
 
   const std::string& path_;
   const ImportRequest& request_;
+  std::string text_;
   std::vector<std::string_view> lines_;
-  bool has_arrivals_ = false;
   ImportedTable table_;
   TableLayout layout_;
   RowBlock block_;
@@ -863,9 +916,9 @@ class Importer {
 }  // namespace
 
 Result<ImportedTable> import_table(const std::string& path, const ImportRequest& request) {
-  const auto text = read_foreign_text(path);
+  auto text = read_foreign_text(path);
   if (!text) return text.error();
-  return Importer(*text, path, request).run();
+  return Importer(std::move(*text), path, request).run();
 }
 
 Status check_limits(const std::string& path, const ImportRequest& request, const ImportedTable& table) {

@@ -3,7 +3,6 @@
 #include <charconv>
 #include <chrono>
 #include <cmath>
-#include <functional>
 #include <iterator>
 #include <numeric>
 #include <string>
@@ -37,25 +36,20 @@ bool skip_one_of(std::string_view& text, std::string_view any_of) {
   return true;
 }
 
-bool parse_month(std::string_view& text, int& month) {
-  if (parse_digits(text, 2, month)) return true;
-  constexpr std::string_view kMonths = "janfebmaraprmayjunjulaugsepoctnovdec";
-  const std::size_t at = text.size() < 3 ? std::string_view::npos : kMonths.find(lower_ascii(text.substr(0, 3)));
-  if (at == std::string_view::npos || at % 3 != 0) return false;
-  month = static_cast<int>(at / 3) + 1;
-  text.remove_prefix(3);
-  return true;
-}
-
 // Parses and removes a date at the start of `text`.
 bool parse_date(std::string_view& text, bool day_first, std::int64_t& days) {
+  constexpr std::string_view kMonths = "janfebmaraprmayjunjulaugsepoctnovdec";
   std::string_view rest = text;
   std::array<int, 3> parts{};
   if (!parse_digits(rest, 4, parts[0])) return false;
   const std::string_view mark = rest.substr(0, 1);
   if (!skip_one_of(rest, "-/.")) return false;
-  const bool named = !rest.empty() && !is_digit(rest.front());  // the month
-  if (!parse_month(rest, parts[1]) || !skip_one_of(rest, mark) || !parse_digits(rest, 4, parts[2])) return false;
+  const std::size_t month = rest.size() < 3 ? kMonths.size() : kMonths.find(lower_ascii(rest.substr(0, 3)));
+  const bool named = month < kMonths.size() && month % 3 == 0;
+  if (named) rest.remove_prefix(3);
+  if (named) parts[1] = static_cast<int>(month / 3) + 1;
+  if ((!named && !parse_digits(rest, 2, parts[1])) || !skip_one_of(rest, mark) || !parse_digits(rest, 4, parts[2]))
+    return false;
   if (parts[0] < 32) {
     if (!day_first && !named) std::swap(parts[0], parts[1]);
     std::swap(parts[0], parts[2]);
@@ -84,13 +78,15 @@ bool skip_days(std::string_view& text, std::int64_t& days) {
   return true;
 }
 
-// "Z", "UTC", "+01:00", "-0500"
-bool is_time_zone(std::string_view text) {
-  if (text.empty() || text == "Z" || text == "UTC") return true;
+// "Z", "UTC", "+01:00", "-0500"; the seconds before UTC.
+std::optional<std::int64_t> parse_time_zone(std::string_view text) {
+  if (text.empty() || text == "Z" || text == "UTC") return 0;
+  const std::int64_t sign = text.front() == '-' ? -1 : 1;
   int hours = 0, minutes = 0;
-  if (!skip_one_of(text, "+-") || !parse_digits(text, 2, hours)) return false;
+  if (!skip_one_of(text, "+-") || !parse_digits(text, 2, hours)) return std::nullopt;
   skip_one_of(text, ":");
-  return text.empty() || (parse_digits(text, 2, minutes) && text.empty());
+  if (!text.empty() && (!parse_digits(text, 2, minutes) || !text.empty())) return std::nullopt;
+  return sign * (3600 * hours + 60 * minutes);
 }
 
 }  // namespace
@@ -200,7 +196,9 @@ std::optional<Time> parse_clock(std::string_view text, bool day_first) {
     if (half == "am" && first == 12) time.whole -= kDay_s / 2;
     text.remove_prefix(2);
   }
-  return is_time_zone(trimmed(text)) ? std::optional(time) : std::nullopt;  // the same in every row
+  const auto zone_s = parse_time_zone(trimmed(text));
+  time.whole -= zone_s.value_or(0);
+  return zone_s ? std::optional(time) : std::nullopt;
 }
 
 }  // namespace
@@ -220,36 +218,39 @@ void ColumnTimes::measure_steps() {
     last = time;
   }
   if (steps.empty()) return;
-  const auto count = static_cast<double>(intervals);
-  mean_step = std::accumulate(steps.begin(), steps.end(), 0.0) / count;
-  median_step = nth_smallest(steps, steps.size() / 2) * static_cast<double>(steps.size()) / count;
+  plain_step = nth_smallest(steps, steps.size() / 2);
+  const auto count = static_cast<double>(steps.size());
+  steady = std::abs(std::accumulate(steps.begin(), steps.end(), 0.0) / count / plain_step - 1.0) < 1e-3;
+  median_step = plain_step * count / static_cast<double>(intervals);
 }
 
 Result<ColumnTimes> read_times(const Fields& cells, char decimal) {
   ColumnTimes times;
   const auto first =
       std::ranges::find_if(cells, [](std::string_view cell) { return !cell.empty() && !is_missing_value(cell); });
+  times.since_first.reserve(cells.size());
   times.of_a_clock = first != cells.end() && !parse_plain_time(*first, decimal) && is_of_a_clock(*first);
   times.with_dates = times.of_a_clock && has_date(*first);
+  const auto parse = [&](std::string_view cell, bool day_first) {
+    return times.of_a_clock ? parse_clock(cell, day_first) : parse_plain_time(cell, decimal);
+  };
   // The order of day and month in which the most cells are dates; of two the one in which the recording is shorter.
-  std::vector<std::optional<Time>> parsed;
-  std::pair<std::ptrdiff_t, double> best;  // cells that are no time, duration
+  std::array<std::pair<std::size_t, double>, 2> quality{};  // cells that are no time, duration
   for (const bool day_first : {true, false}) {
-    std::vector<std::optional<Time>> tried;
-    for (const std::string_view cell : cells)
-      tried.push_back(times.of_a_clock ? parse_clock(cell, day_first) : parse_plain_time(cell, decimal));
-    const auto is_time = [](const auto& time) { return time.has_value(); };
-    const auto begin = std::ranges::find_if(tried, is_time);
-    const auto end = std::find_if(tried.rbegin(), tried.rend(), is_time);
-    const std::pair quality{std::ranges::count_if(tried, std::not_fn(is_time)),
-                            begin == tried.end() ? 0.0 : std::abs(since(**end, **begin))};
-    if (parsed.empty() || quality < best) parsed = std::move(tried), best = quality;
-    if (!times.with_dates) break;
+    std::optional<Time> begin, end;
+    for (std::size_t i = 0; times.with_dates && i < cells.size(); ++i) {
+      const auto time = parse(cells[i], day_first);
+      if (!time) ++quality[day_first].first;
+      if (time) end = time;
+      if (!begin) begin = time;
+    }
+    if (begin) quality[day_first].second = std::abs(since(*end, *begin));
   }
+  const bool day_first = quality[true] <= quality[false];
   std::optional<Time> start;
   double last = 0.0;
   for (std::size_t i = 0; i < cells.size(); ++i) {
-    const auto& time = parsed[i];
+    const auto time = parse(cells[i], day_first);
     times.since_first.push_back(std::nan(""));
     if (!time) {
       // Cells with digits that are neither text between the rows nor damaged: all are like the first one.

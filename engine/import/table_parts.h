@@ -1,10 +1,11 @@
-// The parts of a foreign table, inside this room: text, cells, units, blocks of rows, headers, and the roles of
-// columns. Thread guarantee: slow side only.
+// The parts of a foreign table, inside this room: text, cells, units, layout, and the roles of columns.
+// Thread guarantee: slow side only.
 #pragma once
 
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -13,15 +14,12 @@
 
 namespace palpate {
 
-// Text (table_text.cpp). ---------------------------------------------------------------------------------------------
-
+// Text (table_text.cpp).
 struct ForeignText {
   std::string text;  // UTF-8 without byte order mark; minus signs and blanks of Unicode are those of ASCII
   std::string_view encoding = "UTF-8";  // of the file: UTF-8, Latin-1 or UTF-16
-  bool has_arrivals = false;            // a terminal put a time before each line ("12:30:01.5 -> "): the first column
 };
-// Errors: no such file, not a regular file, unreadable, too large, empty, an Excel workbook or another binary file;
-// each with advice.
+// Errors, each with advice: no such file, not a regular file, unreadable, too large, empty, an archive, binary.
 Result<ForeignText> read_foreign_text(const std::string& path);
 // The lines without their ends: LF, CRLF, or CR alone.
 std::vector<std::string_view> lines_of(std::string_view text);
@@ -36,12 +34,12 @@ struct Delimiter {
 inline constexpr std::array kDelimiters = {Delimiter{"tab", "\t"}, Delimiter{"semicolon", ";"}, Delimiter{"bar", "|"},
                                            Delimiter{"comma", ","}, Delimiter{"blanks", " \t"}};
 using Fields = std::vector<std::string_view>;
+using Lines = std::span<const std::string_view>;
 // The fields of one line without blanks and quotes around them. `fields` is replaced; empty fields at the end of the
 // line are omitted. Returns the number of fields with these.
 std::size_t split_table_fields(std::string_view line, const Delimiter& delimiter, Fields& fields);
 
-// Cells (table_cell.cpp). --------------------------------------------------------------------------------------------
-
+// Cells (table_cell.cpp).
 // Whether `text` is a number, which is then in `value`: "0.5", "-1,25e-3", "+3", "1.5D+00"; also with unambiguous
 // thousands marks: the other mark, an apostrophe or a blank, in groups of three, followed by the decimal mark or
 // repeated ("1,234.5", "1.234.567"). NaN and infinity are not numbers.
@@ -54,8 +52,8 @@ struct TableCell {
 std::optional<TableCell> parse_table_cell(std::string_view text, char decimal);
 // "nan", "-", "---", "n/a", "OL": a cell for a missing value.
 bool is_missing_value(std::string_view text);
-// Whether `field` is a date, a time of day or a duration: "2024-03-05T14:03:22.123Z", "05.03.2024 14:03:22.1",
-// "3/5/2024 2:03:22.5 PM", "05-Mar-2024 14:03:22", "14:03:22.123", "03:22.123", "0 days 00:00:01.5".
+// Whether `field` is a date, a time of day or a duration: "2024-03-05T14:03:22.123Z", "3/5/2024 2:03:22.5 PM",
+// "05-Mar-2024 14:03:22", "14:03:22.123", "03:22.123", "0 days 00:00:01.5".
 bool is_of_a_clock(std::string_view field);
 
 // The times of the rows in the unit of the file (of a clock: s), since the first one; NaN where a cell is no time.
@@ -64,9 +62,10 @@ struct ColumnTimes {
   bool of_a_clock = false, with_dates = false;
   bool whole = true;         // no cell has a fraction
   double first_cell = 0.0;   // the first time itself
+  double plain_step = 0.0;   // median of the steps
   double median_step = 0.0;  // also over rows without a step
-  double mean_step = 0.0;
-  int midnights = 0;  // a clock without dates that goes back by more than half a day has passed midnight
+  bool steady = false;       // the mean step is the median
+  int midnights = 0;         // a clock without dates that goes back by more than half a day has passed midnight
 
   void measure_steps();
 };
@@ -74,31 +73,24 @@ struct ColumnTimes {
 // cell that is no time, and what to write instead.
 Result<ColumnTimes> read_times(const Fields& cells, char decimal);
 
-// Units (units.cpp). -------------------------------------------------------------------------------------------------
-
+// Units (units.cpp).
 // Whether `list`, words separated by blanks, contains this word.
 bool is_word_of(std::string_view list, std::string_view word);
-struct NameAndUnit {
-  std::string name{};          // without the unit
-  std::optional<Unit> unit{};  // when it is known
-  std::string foreign_unit{};  // unknown unit: "%", "degC", "hN"
-};
 // Whether `text` is a unit of another quantity or a word for a number without a unit: "%", "MPa", "mm/s", "cycles".
 bool is_other_unit(std::string_view text);
+// Whether `text` is a unit with a prefix that is in no list: "hN".
+bool is_prefixed_unit(std::string_view text);
 // The size in volts of the unit in `text`, "V" or "mV" in any common spelling; 0: no voltage.
 double volts_of(std::string_view text);
-// Separates the name and the unit of a column: "Pos [mm]", "Fz (mN)", "t/ms", "Force_N", "Standardkraft in N".
-NameAndUnit split_name_and_unit(std::string_view header);
 
-// Blocks of rows, and their header (table_blocks.cpp, table_header.cpp). ---------------------------------------------
-
+// Blocks of rows, and their header (table_layout.cpp).
 // A run of rows of numbers.
 struct RowBlock {
   std::size_t begin = 0, end = 0;  // lines
   std::size_t rows = 0, fields = 0;
 };
 struct TableLayout {
-  Delimiter delimiter;
+  Delimiter delimiter{};
   char decimal = '.';
   std::size_t fields = 0;      // of a row, empty ones included
   std::size_t columns = 0;     // of a row; empty cells at its end do not count
@@ -107,32 +99,39 @@ struct TableLayout {
   std::vector<RowBlock> blocks{};
   bool skippable = true;  // the lines between the blocks are no headers, so that they may be left out
 
-  Fields names{};          // one a column, unless `misfit`; empty without a header
-  bool misfit = false;     // the number of names is not that of the columns
-  Fields units{};          // one a column; empty without a row of units
-  std::size_t header = 0;  // line, from 1; 0 without a header
-  std::size_t rival = 0;   // another line that names the columns, from 1
+  Fields names{};                 // one a column, unless `misfit`; empty without a header
+  bool misfit = false;            // the number of names is not that of the columns
+  Fields units{};                 // one a column; empty without a row of units
+  std::size_t header = 0;         // line, from 1; 0 without a header
+  std::size_t rival = 0;          // another line that names the columns, from 1
+  std::size_t numbers_below = 0;  // a line below the header with numbers that is no row, from 1
   // From a file of LabVIEW without times: the interval and the first time of each column.
   std::vector<double> steps_s{}, starts_s{};
 };
-// Tries every pair of separator and decimal mark; preferred are those in which no field begins like a number without
-// being one, then the one with the most numbers. Then every line is put into a block of rows. A line of text between
-// rows ends a block, unless `most_bad` more lines may be left out. `given_decimal`: the decimal mark if the user has
-// given it. Errors (without the file's name): no rows of numbers; a comma that may be either mark.
-Result<TableLayout> find_table_layout(const std::vector<std::string_view>& lines, std::optional<char> given_decimal,
-                                      std::uint64_t most_bad);
+// Tries every pair of separator and decimal mark, then puts every line into a block of rows. A line of text between
+// rows ends a block, unless `most_bad` more lines may be left out. Errors (without the file's name): no rows of
+// numbers; a comma or point that may be either mark, unless the decimal mark is given.
+Result<TableLayout> find_table_layout(Lines lines, std::optional<char> given_decimal, std::uint64_t most_bad);
 // Whether a line is a row of the table, perhaps damaged, by its numbers.
 bool is_row(const TableLayout& layout, std::string_view line, Fields& fields);
-// Finds the lines of names and of units shortly above the row `first`, and sets them in `layout`. Preferred is a line
-// that names at least two of time, position and force (boards print their status below the header).
-void find_table_header(const std::vector<std::string_view>& lines, std::size_t first, TableLayout& layout);
+// Sets the lines of names and of units shortly above the row `first`. Preferred is a line that names at least two of
+// time, position and force (boards print their status below the header).
+void find_table_header(Lines lines, std::size_t first, TableLayout& layout);
 
-// Columns (column_roles.cpp). ----------------------------------------------------------------------------------------
+// Columns (column_roles.cpp).
+struct NameAndUnit {
+  std::string name{};           // without the unit
+  std::optional<Unit> unit{};   // when it is known
+  std::string foreign_unit{};   // unknown unit: "%", "degC", "hN"
+  std::string contradicting{};  // a second unit, of the name or of the row of units
+};
+// Separates the name and the unit of a column: "Pos [mm]", "Fz (mN)", "t/ms", "Force_N", "Standardkraft in N". What
+// follows a mark after a word for a role ("Kraft/Stein", "Weg in Furlong") is an unknown unit.
+NameAndUnit header_parts(std::string_view header);
 
 struct ForeignColumn {
   std::string header{};  // as in the file; without a header its first value
   NameAndUnit parts{};
-  std::string other_unit{};           // of the row of units, where it contradicts the header
   bool constant = true;               // in all rows
   bool is_units = true;               // every cell is a unit: that of the column before
   bool is_clock = true;               // every cell is of a clock
@@ -141,7 +140,6 @@ struct ForeignColumn {
   std::size_t changes = 0;            // rows with another value than the row above
 };
 inline constexpr std::size_t kMostValues = 40;
-NameAndUnit header_parts(std::string_view header);
 
 // The roles that the fields of a line name, by words or units.
 struct NamedRoles {

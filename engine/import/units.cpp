@@ -68,21 +68,7 @@ std::string_view without_brackets(std::string_view text) {
   return trimmed(text.substr(1, text.size() - 2));
 }
 
-NameAndUnit parts(std::string_view name, std::string_view unit) {
-  return {std::string(trimmed(name)), find_unit(unit), ""};
-}
-
-// Splits "Pos [mm]" at the last pair of brackets.
-std::optional<NameAndUnit> bracketed(std::string_view header) {
-  const std::size_t open = header.find_last_of(kOpening);
-  if (open == std::string_view::npos || open == 0) return std::nullopt;
-  const std::size_t close = header.find(kClosing[kOpening.find(header[open])], open);
-  if (close == std::string_view::npos) return std::nullopt;
-  const std::string_view inside = trimmed(header.substr(open + 1, close - open - 1));
-  NameAndUnit result = parts(header.substr(0, open), inside);
-  if (!result.unit) result.foreign_unit = std::string(inside);
-  return result;
-}
+}  // namespace
 
 // Whether `text` is a unit with a prefix that is in no list: "hN".
 bool is_prefixed_unit(std::string_view text) {
@@ -90,8 +76,6 @@ bool is_prefixed_unit(std::string_view text) {
     if (text.starts_with(prefix) && is_word_of("N m s g lbf", text.substr(prefix.size()))) return true;
   return false;
 }
-
-}  // namespace
 
 bool is_word_of(std::string_view list, std::string_view word) {
   if (word.empty() || word.find(' ') != std::string_view::npos) return false;
@@ -134,32 +118,6 @@ double volts_of(std::string_view text) {
   const std::string name = lower_ascii(without_brackets(text));
   if (is_word_of("mv millivolt millivolts", name)) return 1e-3;
   return is_word_of("v volt volts", name) ? 1.0 : 0.0;
-}
-
-NameAndUnit split_name_and_unit(std::string_view header) {
-  header = trimmed(header);
-  // The parts before and after a mark, if the second is a unit.
-  const auto split_at = [&](std::size_t mark, std::size_t length) -> std::optional<NameAndUnit> {
-    if (mark == std::string_view::npos || mark == 0) return std::nullopt;
-    NameAndUnit result = parts(header.substr(0, mark), header.substr(mark + length));
-    return result.unit ? std::optional(result) : std::nullopt;
-  };
-  // "Position (z), mm": the unit may follow the brackets.
-  const auto found = bracketed(header);
-  const auto behind_comma = split_at(header.rfind(','), 1);
-  if (behind_comma && (!found || !found->unit)) return *behind_comma;
-  if (found) return *found;
-  // The most reliable mark first: a slash, the word "in", then a last word after any mark.
-  if (const auto result = split_at(header.rfind('/'), 1)) return *result;
-  if (const auto result = split_at(header.rfind(" in "), 4)) return *result;
-  if (const auto result = split_at(header.find_last_of(" _,;:-."), 1)) return *result;
-  if (const std::size_t mark = header.find_last_of(" _,;:-./"); mark != std::string_view::npos && mark > 0) {
-    const std::string_view last = header.substr(mark + 1);
-    if (is_prefixed_unit(last)) return {std::string(trimmed(header.substr(0, mark))), std::nullopt, std::string(last)};
-  }
-  // "millis" alone is a name and a unit.
-  const auto whole = header.size() > 1 ? find_unit(header) : std::nullopt;
-  return {std::string(header), whole && whole->quantity == Quantity::time ? whole : std::nullopt, ""};
 }
 
 }  // namespace palpate

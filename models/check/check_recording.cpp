@@ -261,11 +261,10 @@ class Checker {
   }
 
   void check_lag() {
-    // Without an onset of force, a lag cannot be distinguished from the material's memory.
-    if (!surface_.air.found) return;
     const OffsetEstimate lag = find_force_lag(prepared_.rows, noise_N_);
+    // Without an onset of force, a short lag or a lead cannot be distinguished from the material's memory.
+    if (lag.at == 0.0 || (!surface_.air.found && lag.at <= kNearLag_s)) return;
     lag_s_ = lag.at;
-    if (lag.at == 0.0) return;
     if (!std::isfinite(lag.standard_error)) {
       add("lag", Severity::warning, lag.at,
           words("the force %s the position by about %.3g s or more, where the search ends",

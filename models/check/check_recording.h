@@ -68,11 +68,12 @@ struct ZeroDrift {
 ZeroDrift find_zero_drift(const PreparedRecording& prepared);
 
 // The lag of the force behind the position, of at most kMostLag_s either way. `rows`: of a recording,
-// in time order; uses the first 4000 that are at least 5 ms apart. `at` > 0 s: the force is late; 0 if the data do not
-// identify a lag (models/samples/selection.h), with fewer than 100 rows or three strokes, or with rows too far apart.
-// The standard error includes the interval of the rows. A lag at the end of the search is kMostLag_s, with an infinite
-// error.
+// in time order; uses 4000 that are at least 5 ms apart, of a longer recording in five windows. `at` > 0 s: the force
+// is late; 0 if the data do not identify a lag (models/samples/selection.h), with fewer than 100 rows or three strokes,
+// or with rows too far apart. The standard error includes the interval of the rows. A lag at the end of the search is
+// kMostLag_s, with an infinite error.
 inline constexpr double kMostLag_s = 1.0;
+inline constexpr double kNearLag_s = 0.05;  // searched in fine steps, and by every row
 OffsetEstimate find_force_lag(const std::vector<Sample>& rows, double force_noise_N);
 
 // The figures of merit of a perfect model, whose error e is normal with the standard deviation s of the force sensor:

@@ -306,10 +306,10 @@ NoiseFloor noise_floor(const std::vector<const PreparedRecording*>& recordings, 
 
 namespace {
 
-constexpr double kNearLag_s = 0.05;  // searched in fine steps, and by every row
 // The steps of the search for a longer lag, on every fourth row: a fifth of a quick stroke.
 constexpr double kFarStep_s = 0.04;
 constexpr std::size_t kFarStride = 4;
+constexpr std::size_t kWindows = 5;
 // A longer lag is searched for where it lowers the cost to this share.
 constexpr double kFarGain = 0.5;
 constexpr double kCoarse_s = 0.005;  // between lags, and at least between rows
@@ -363,9 +363,9 @@ class MotionAt {
 // The regression of the recording with one lag.
 class LagRegression {
  public:
-  // `noise_N`: standard deviation of the forces.
-  LagRegression(const std::vector<Sample>& rows, double noise_N)
-      : rows_(rows), noise_N_(noise_N), block_(blocks_by_path(rows)) {
+  // `motion`: rows that contain `rows` and those before. `noise_N`: standard deviation of the forces.
+  LagRegression(const std::vector<Sample>& motion, const std::vector<Sample>& rows, double noise_N)
+      : motion_(motion), rows_(rows), noise_N_(noise_N), block_(blocks_by_path(rows)) {
     std::tie(low_m_, high_m_) = position_range_m(rows);
     const auto force_N = [&](Eigen::Index i) { return rows[static_cast<std::size_t>(i)].force_N; };
     force_N_ = Eigen::VectorXd::NullaryExpr(static_cast<Eigen::Index>(rows.size()), force_N);
@@ -401,7 +401,7 @@ class LagRegression {
 
   Design design_at(double lag_s) const {
     Design design(force_N_.size(), kColumns);
-    MotionAt motion_at(rows_);
+    MotionAt motion_at(motion_);
     std::array<double, kBranch> drive{};
     for (std::size_t r = 0; r < rows_.size(); ++r) {
       const MotionEstimate motion = motion_at(rows_[r].tool.time_s - lag_s);
@@ -437,7 +437,7 @@ class LagRegression {
     return is_idle(i, predicted_N) ? 0.0 : (force_N_(i) - predicted_N) * scale_(i);
   }
 
-  const std::vector<Sample>& rows_;
+  const std::vector<Sample>&motion_, &rows_;
   double noise_N_;
   std::vector<std::size_t> block_;
   double low_m_ = 0.0, high_m_ = 0.0;
@@ -457,10 +457,10 @@ int strokes_of(const std::vector<Sample>& rows, double middle_m) {
 }
 
 // The lag beyond the near range with the lowest cost, in coarse steps; 0 if none is clearly better than all near ones.
-double far_lag_s(const std::vector<Sample>& rows, double noise_N) {
+double far_lag_s(const std::vector<Sample>& motion, const std::vector<Sample>& rows, double noise_N) {
   std::vector<Sample> some;
   for (std::size_t i = 0; i < rows.size(); i += kFarStride) some.push_back(rows[i]);
-  const LagRegression regression(some, noise_N);
+  const LagRegression regression(motion, some, noise_N);
   const auto cost = [&](double lag_s) {
     const BlockCosts costs = regression.costs(lag_s);
     return std::accumulate(costs.begin(), costs.end(), 0.0);
@@ -480,19 +480,23 @@ double far_lag_s(const std::vector<Sample>& rows, double noise_N) {
 }  // namespace
 
 OffsetEstimate find_force_lag(const std::vector<Sample>& rows, double force_noise_N) {
-  std::vector<Sample> some;
-  for (const Sample& row : rows) {
-    if (some.size() == kSearchRows) break;
-    if (some.empty() || row.tool.time_s >= some.back().tool.time_s + kCoarse_s) some.push_back(row);
-  }
-  if (some.size() < 100) return {};
-  const double step_s = (some.back().tool.time_s - some.front().tool.time_s) / static_cast<double>(some.size() - 1);
+  std::vector<Sample> motion;
+  for (const Sample& row : rows)
+    if (motion.empty() || row.tool.time_s >= motion.back().tool.time_s + kCoarse_s) motion.push_back(row);
+  if (motion.size() < 100) return {};
+  const double step_s =
+      (motion.back().tool.time_s - motion.front().tool.time_s) / static_cast<double>(motion.size() - 1);
   if (step_s > 10.0 * kAccuracy_s) return {};
-  const auto [low_m, high_m] = position_range_m(some);
-  if (!(high_m > low_m) || strokes_of(some, 0.5 * (low_m + high_m)) < kLeastStrokes) return {};
-  const LagRegression regression(some, force_noise_N);
+  const auto [low_m, high_m] = position_range_m(motion);
+  if (!(high_m > low_m) || strokes_of(motion, 0.5 * (low_m + high_m)) < kLeastStrokes) return {};
+  // Of a long recording windows of equal length, so that slow and quick strokes are among them.
+  std::vector<Sample> some;
+  const std::size_t part = std::max(motion.size(), kSearchRows) / kWindows;
+  for (std::size_t i = 0; i < motion.size(); ++i)
+    if (i % part < kSearchRows / kWindows) some.push_back(motion[i]);
+  const LagRegression regression(motion, some, force_noise_N);
   double low_s = -kNearLag_s, high_s = kNearLag_s;
-  const double far_s = far_lag_s(some, force_noise_N);
+  const double far_s = far_lag_s(motion, some, force_noise_N);
   if (std::abs(far_s) > kMostLag_s - kFarStep_s) return {far_s, true, kUnknownError, true, far_s};
   (far_s < 0.0 ? low_s : high_s) += far_s < 0.0 ? std::min(0.0, far_s) : far_s;
   OffsetEstimate lag = estimate_offset([&](double lag_s) { return regression.costs(lag_s); },

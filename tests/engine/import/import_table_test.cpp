@@ -166,7 +166,9 @@ TEST(ImportTable, OneReadingIsImported) {
       {"a column of units", table_of("Force,Unit,Travel,Unit,Time (s)", "%g,mN,%x,mm,%t"), ""},
       {"a minus sign of a typesetter", all_replaced(kPlain, "-", "\xE2\x88\x92"), ""},
       {"exponents of Fortran", table_of(kHeader, "%tD+00,%xD+00,%fD+00"), ""},
-      {"lines that end with CR", all_replaced(kPlain, "\n", "\r"), ""},
+      {"lines that end with CR", all_replaced(kPlain, "\n", "\r") + "\n", ""},
+      {"the numbers of columns that are also cells", table_of("", "2,%t,%x,%f"),
+       "--columns time=2,position=3,force=4 --units s,mm,N"},
       {"a constant column", table_of("Time (s),Distance (mm),Height (mm),F (N)", "%t,%x,12.0,%f"), ""},
       {"bars between the fields", all_replaced(kPlain, ",", " | "), ""},
       {"decimal commas between quotes",
@@ -211,14 +213,14 @@ TEST(ImportTable, OtherwiseTheReadingsThatRemainAreCommands) {
        "rig.txt: " + blocks + command + "--block 1  # lines 2 to 61: 60 rows of 3 fields" + command +
            "--block 2  # lines 63 to 262: 200 rows of 3 fields"},
       {"2020,3,2,12,30,45\n" + table_of("", "%x,%f"), "--columns position=1,force=2",
-       "rig.txt: " + blocks + command + "--columns position=1,force=2 --block 1  # line 1: 1 row of 6 fields" +
-           command + "--columns position=1,force=2 --block 2  # lines 2 to 201: 200 rows of 2 fields"},
+       "rig.txt: " + blocks + "\n  line 1: 1 row of 6 fields, too few for a recording" + command +
+           "--columns position=1,force=2 --block 2  # lines 2 to 201: 200 rows of 2 fields"},
       {kHeader + "\n1,2,3\n" + rows_of(0, kRows), "",
-       "rig.txt: " + blocks + command + "--block 1  # line 2: 1 row of 3 fields" + command +
+       "rig.txt: " + blocks + "\n  line 2: 1 row of 3 fields, too few for a recording" + command +
            "--block 2  # lines 3 to 202: 200 rows of 3 fields"},
       {table_of(kHeader, "%t,%x,%f", 0, 8) + "event: hold\n" + rows_of(8, 60), "",
-       "rig.txt: " + blocks + command + "--skip-bad-rows 1  # all rows, without the text between them" + command +
-           "--block 1  # lines 2 to 9: 8 rows of 3 fields" + command +
+       "rig.txt: " + blocks + command + "--skip-bad-rows 1  # all rows, without the text between them" +
+           "\n  lines 2 to 9: 8 rows of 3 fields, too few for a recording" + command +
            "--block 2  # lines 11 to 62: 52 rows of 3 fields"},
       {kPlain + rows_of(60, 100), "",
        "rig.txt:202: found a time 1.99 s before that of the row above \"Time (s)\", expected later times in every row; "
@@ -237,8 +239,8 @@ TEST(ImportTable, OtherwiseTheReadingsThatRemainAreCommands) {
        "rig.txt: found two clocks that differ by up to 197.01 s, in columns 2 \"t_us\" and 1 \"host_s\", expected one; "
        "choose the time" +
            command + "--columns time=2  # \"t_us\": 1.99 s" + command + "--columns time=1  # \"host_s\": 199 s"},
-      {"X_Columns\tNo\nDelta_X\t0.01\t0.1\nX0\t0\t0\nX_Value\tF (N)\tx (mm)\n" + table_of("", "\t%f\t%b"), "",
-       "rig.txt: found two clocks, with a position every 0.1 s from 0 s on and a force every 0.01 s from 0 s on, "
+      {"X_Columns\tNo\nDelta_X\t0.01\t0.015\nX0\t0\t0\nX_Value\tF (N)\tx (mm)\n" + table_of("", "\t%f\t%p"), "",
+       "rig.txt: found two clocks, with a position every 0.015 s from 0 s on and a force every 0.01 s from 0 s on, "
        "expected one, or a position that is fast enough to be interpolated; export both channels with one interval"},
       {table_of("specimen,t_s,x_mm,F_N", "%b,%t,%x,%f"), "",
        "rig.txt: found rows of 2 series that alternate, by column 1 \"specimen\" (1, 2), expected one; write the rows "
@@ -249,9 +251,35 @@ TEST(ImportTable, OtherwiseTheReadingsThatRemainAreCommands) {
            "--rate 100 --rows 2-31  # A" + command + "--rate 100 --rows 32-61  # B" + command +
            "--rate 100 --rows 2-61  # all as one recording"},
       {"Time (s),Position (m),Force (N)\ns,mm,N\n" + rows_of(0, kRows), "",
-       "rig.txt:1: found two units of the position \"Position (m)\": m in the name and mm in the row of units, "
-       "expected "
-       "one; correct the header"},
+       "rig.txt:1: found two units of the position \"Position (m)\", m and mm, expected one; correct the header, or "
+       "give "
+       "the unit of the numbers" +
+           command + "--units m  # the first" + command + "--units mm  # the second"},
+      {table_of("t_s,x_mm,force_N (mN)", "%t,%x,%g"), "",
+       "rig.txt:1: found two units of the force \"force_N (mN)\", mN and N, expected one; correct the header, or give "
+       "the "
+       "unit of the numbers" +
+           command + "--units mN  # the first" + command + "--units N  # the second"},
+      {table_of("t_s,x_mm,a (g)", "%t,%x,%f"), "",
+       "rig.txt: found no column that is clearly the force, expected one column for each of time, position and force; "
+       "the columns are 1 \"t_s\", 2 \"x_mm\", 3 \"a (g)\"" +
+           command + "--columns force=3  # \"a (g)\""},
+      {all_replaced(all_replaced(table_of("Time (s),x_mm,F_N", "14035%t,%x,%f"), "140350.", "140359."), "140351.",
+                    "140400."),
+       "",
+       "rig.txt:102: found a time 40.01 s after that of the row above \"Time (s)\" at a multiple of 100 s, as where "
+       "hours, "
+       "minutes and seconds are written as one number; write seconds, or 14:03:22.010"},
+      {kHeader + "\nScale,0.5,2.5\n" + rows_of(0, kRows), "",
+       "rig.txt:2: found numbers in a line between the names of the columns and the rows, expected none, because they "
+       "may scale the columns; remove the line, or leave it out" +
+           command + "--rows 3-202  # without this line"},
+      {table_of("Time (ms),x_mm,F_N", "%c,%x,%f"), "",
+       "rig.txt: found times of a clock in the time \"Time (ms)\", expected numbers in ms, as the header says" +
+           command + "--units s  # the times of the clock"},
+      {table_of("src,x_mm,F_N", "1,%x,%f\n2,%f,%x"), "--rate 100",
+       "rig.txt: found rows of 2 series that alternate, by the position \"x_mm\", which is nearer to that 2 rows above "
+       "than to that of the row above, expected one; write the rows of each into a file of its own"},
       {table_of("Force,Unit,x (mm),t (s)", "%g,mN,%x,%t"), "--units N",
        "rig.txt: found the unit mN in the rows of the force \"Force\", expected N, as --units says; correct the one "
        "that is wrong"},

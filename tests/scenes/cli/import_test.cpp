@@ -96,21 +96,19 @@ TEST(ImportVerb, WrongUsageEndsWithTwo) {
   const test::TemporaryFolder folder;
   const std::string file = kFiles + "02_matlab.csv";
   const std::string out = folder.file("x.csv");
-  for (const std::vector<std::string>& extra : std::vector<std::vector<std::string>>{{"--columns", "weg=2"},
-                                                                                     {"--units", "furlong"},
-                                                                                     {"--units", "mm,cm"},
-                                                                                     {"--flip", "time"},
-                                                                                     {"--rate", "0"},
-                                                                                     {"--rate", "nan"},
-                                                                                     {"--gain", "0"},
-                                                                                     {"--gain", "nan"},
-                                                                                     {"--skip-bad-rows", "-1"},
-                                                                                     {"--rows", "9-2"},
-                                                                                     {"--tare", "x"}}) {
-    std::vector<std::string> arguments = {"import", file, "--out", out};
-    arguments.insert(arguments.end(), extra.begin(), extra.end());
-    EXPECT_EQ(run_palpate(arguments).exit_code, 2) << extra.back();
-  }
+  using Option = std::pair<std::string, std::string>;
+  for (const auto& [option, value] : {Option{"--columns", "weg=2"},
+                                      {"--units", "furlong"},
+                                      {"--units", "mm,cm"},
+                                      {"--flip", "time"},
+                                      {"--rate", "0"},
+                                      {"--rate", "nan"},
+                                      {"--gain", "0"},
+                                      {"--gain", "nan"},
+                                      {"--skip-bad-rows", "-1"},
+                                      {"--rows", "9-2"},
+                                      {"--tare", "x"}})
+    EXPECT_EQ(run_palpate({"import", file, "--out", out, option, value}).exit_code, 2) << value;
   EXPECT_TRUE(folder.entries().empty());
 }
 
