@@ -81,7 +81,7 @@ struct Drawing {
     const bool brief = models().compared && ImGui::CalcTextSize(words.c_str()).x > room;
     ImGui::TextDisabled("%s", fitting(brief ? "of " + models().reference_name : words, room).c_str());
     ImGui::EndGroup();
-    tip((words + "\nForce of every model, and in green what they are compared with.\n"
+    tip((words + "\nForce of every model, and on top what they are compared with.\n"
                  "The grey band is one just noticeable difference (JND) to either side.\n"
                  "Marks at the top: missed deadlines, and in red faults (L lists them).\n"
                  "Drag: blocks and numbers show that moment. Shift and drag: zoom. Wheel: scroll back.\n"
