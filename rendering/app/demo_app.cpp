@@ -61,8 +61,7 @@ Status DemoApp::set_up(const DemoRequest& request) {
   listen();
   if (find_font().empty()) notify("no font found; install fonts-dejavu-core", true);
   for (const std::string& recording : request.recordings) files_.open_recording(recording);
-  view_.time.zero_s = steady_now_s();
-  frame_began_s_ = last_frame_s_ = steady_now_s();
+  view_.time.zero_s = last_frame_s_ = steady_now_s();
   look();
   return {};
 }
@@ -129,14 +128,12 @@ void DemoApp::note_input() {
 void DemoApp::frame() {
   if (session_ == nullptr) return;  // the program is closing
   glfwPollEvents();
-  const double now_s = steady_now_s();
   session_->update();
-  read_notices(now_s);
+  read_notices();
   files_.update(*session_);
   look();
-  blocks_->camera().advance(static_cast<float>(now_s - frame_began_s_));
-  frame_began_s_ = now_s;
-  if (window_->is_visible()) draw(needs_texts(now_s));
+  blocks_->camera().advance(static_cast<float>(window_->frame_s()));
+  if (window_->is_visible()) draw(needs_texts(steady_now_s()));
   handle_keys();
   // The session changes between two frames, because drawing refers to it.
   if (next_) reopen(*std::exchange(next_, std::nullopt));
@@ -154,9 +151,9 @@ void DemoApp::frame() {
 
 void DemoApp::look() { shown_ = window_view(*session_, view_); }
 
-void DemoApp::read_notices(double now_s) {
+void DemoApp::read_notices() {
   for (const Notice& notice : session_->read_notices()) notify(notice.text, notice.problem);
-  std::erase_if(view_.toasts, [&](const Toast& toast) { return toast.until_s < now_s; });
+  std::erase_if(view_.toasts, [&](Toast& toast) { return (toast.left_s -= window_->frame_s()) < 0.0; });
   if (view_.toasts.size() > kMostToasts) view_.toasts.erase(view_.toasts.begin(), view_.toasts.end() - kMostToasts);
 }
 
@@ -166,7 +163,7 @@ void DemoApp::notify(std::string text, bool problem) {
     return;
   }
   std::erase_if(view_.toasts, [&](const Toast& toast) { return toast.text == text; });
-  view_.toasts.push_back({{std::move(text), problem}, steady_now_s() + (problem ? kProblemToast_s : kToast_s)});
+  view_.toasts.push_back({{std::move(text), problem}, problem ? kProblemToast_s : kToast_s});
 }
 
 // Opens another material and fits models to it; models from files are kept.
@@ -254,6 +251,7 @@ WindowActions DemoApp::make_actions() {
   actions.worst = [this](std::size_t slot) { use_worst(slot); };
   actions.scale = [this](const ForceScale& scale) { session_->controls().scale = scale; };
   actions.zero_device = [this] { session_->start_zeroing(); };
+  actions.look_for_devices = [this] { files_.look_for_devices(); };
   actions.seek = [this](double at_s) { session_->replay()->seek(at_s); };
   actions.set_speed = [this](double speed) { session_->replay()->set_speed(speed); };
   actions.move_surface = [this](bool moved) { session_->move_surface(moved); };

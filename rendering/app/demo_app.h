@@ -175,6 +175,7 @@ class DemoApp {
   void hover_block(const ImVec2& mouse);
   double limited_depth_m(double requested_m) const;
   std::optional<std::size_t> block_at(const ImVec2& point) const;
+  std::size_t block_count() const { return std::max<std::size_t>(shown_.blocks.size(), 1); }
   void close_windows();
   void select_listed(std::size_t number);
   void use_block_count(std::size_t wanted);
@@ -184,7 +185,7 @@ class DemoApp {
   void stop_or_go_on();
   void save(int what);
   WindowActions make_actions();
-  void read_notices(double now_s);
+  void read_notices();
   bool needs_texts(double now_s);
   void draw(bool texts);
   void draw_texts();
@@ -238,9 +239,8 @@ class DemoApp {
   double lively_until_s_ = 0.0;  // until then they are drawn in every frame
   bool no_model_ = true;         // in the last frame
   std::string picture_;          // a file for the picture of the next frame; empty: none
-  double frame_began_s_ = 0.0;
-  double last_frame_s_ = 0.0;  // end of the last frame
-  bool leaving_ = false;       // `close` was called; an exhibit ends only by it
+  double last_frame_s_ = 0.0;    // end of the last frame
+  bool leaving_ = false;         // `close` was called; an exhibit ends only by it
   Status outcome_;
 };
 

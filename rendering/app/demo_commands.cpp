@@ -47,26 +47,20 @@ WindowCommand toggle(int key, const char* label, const char* help, bool& setting
   return with_state(command(key, label, help, [&setting] { setting = !setting; }), [&setting] { return setting; });
 }
 
-WindowCommand in_bar(WindowCommand command) {
-  command.bar = true;
-  return command;
+// Opens a dialog, or closes it.
+WindowCommand dialog(int key, const char* label, const char* help, Dialog one, Dialog& open) {
+  return with_state(command(key, label, help, [one, &open] { open = open == one ? Dialog::none : one; }),
+                    [one, &open] { return open == one; });
 }
 
-WindowCommand in_replay(WindowCommand command) {
-  command.replay = true;
+// The command with another value of a field.
+template <typename Value>
+WindowCommand with(Value WindowCommand::*field, std::type_identity_t<Value> value, WindowCommand command) {
+  command.*field = std::move(value);
   return command;
 }
-
-WindowCommand when(When when, WindowCommand command) {
-  command.when = when;
-  return command;
-}
-
-// Shows these words instead of the names of the keys.
-WindowCommand shown_as(const char* shown, WindowCommand command) {
-  command.shown = shown;
-  return command;
-}
+WindowCommand in_bar(WindowCommand command) { return with(&WindowCommand::bar, true, std::move(command)); }
+WindowCommand in_replay(WindowCommand command) { return with(&WindowCommand::replay, true, std::move(command)); }
 
 }  // namespace
 
@@ -96,7 +90,7 @@ std::vector<WindowChoice> DemoApp::choices() {
 
 std::vector<WindowCommand> DemoApp::make_commands() {
   Settings& settings = view_.settings;
-  Dialogs& dialogs = view_.dialogs;
+  Dialog& open = view_.dialogs.open;
   const auto press = [this](std::size_t key) { key_velocity_m_per_s_ += (key == 0 ? 1.0 : -1.0) * kKeySpeed_m_per_s; };
   const auto scroll = [this](std::size_t key) {
     const ForceHistory& history = session_->comparison().history();
@@ -108,32 +102,28 @@ std::vector<WindowCommand> DemoApp::make_commands() {
   const auto resize = [&settings](float step) {
     settings.text_size = std::clamp(settings.text_size + step, kSmallestText, kLargestText);
   };
-  WindowCommand help = toggle(GLFW_KEY_H, "Help", "what the picture shows, and all keys", dialogs.help);
+  WindowCommand help = dialog(GLFW_KEY_H, "Help", "what the picture shows, and all keys", Dialog::help, open);
   help.keys.push_back(GLFW_KEY_SLASH);
   std::vector<WindowCommand> all{
       hint("left button", "press it on a block and pull down: the probe presses; let go: it is lifted"),
       hint("wheel", "moves the probe step by step; with Ctrl: zooms the view"),
       hint("right button", "turns the view"),
-      when(When::held,
+      with(&WindowCommand::when, When::held,
            keys({GLFW_KEY_DOWN, GLFW_KEY_UP}, "press deeper; lift the probe to just above the surface", press)),
-      shown_as("1 ... 9", keys({GLFW_KEY_1, GLFW_KEY_2, GLFW_KEY_3, GLFW_KEY_4, GLFW_KEY_5, GLFW_KEY_6, GLFW_KEY_7,
-                                GLFW_KEY_8, GLFW_KEY_9},
-                               "choose a model, or the true material after the last; a click on its block or row too",
-                               [this](std::size_t key) { select_listed(key); })),
-      in_bar(toggle(GLFW_KEY_O, "Open", "open recordings, other programs' tables or models", dialogs.file_list)),
-      in_bar(toggle(GLFW_KEY_S, "Scene", "choose another material", dialogs.scene_list)),
-      in_bar(with_state(command(GLFW_KEY_D, "Device", "choose what holds the tool",
-                                [this, &dialogs] {
-                                  dialogs.device_list = !dialogs.device_list;
-                                  if (dialogs.device_list) files_.look_for_devices();
-                                }),
-                        [&dialogs] { return dialogs.device_list; })),
+      with(&WindowCommand::shown, "1 ... 9",
+           keys({GLFW_KEY_1, GLFW_KEY_2, GLFW_KEY_3, GLFW_KEY_4, GLFW_KEY_5, GLFW_KEY_6, GLFW_KEY_7, GLFW_KEY_8,
+                 GLFW_KEY_9},
+                "choose a model, or the true material after the last; a click on its block or row too",
+                [this](std::size_t key) { select_listed(key); })),
+      in_bar(dialog(GLFW_KEY_O, "Open", "open recordings, other programs' tables or models", Dialog::files, open)),
+      in_bar(dialog(GLFW_KEY_S, "Scene", "choose another material", Dialog::scenes, open)),
+      in_bar(dialog(GLFW_KEY_D, "Device", "choose what holds the tool", Dialog::devices, open)),
       in_bar(with_state(
           command(GLFW_KEY_R, "Record", "record this session to a file that `palpate fit` reads",
                   [this] { files_.record(*session_); }),
           [this] { return session_->recording().active; }, "Stop recording")),
-      in_bar(toggle(GLFW_KEY_V, "View", "choose what is shown, and what is compared with what", dialogs.view_list)),
-      in_bar(toggle(GLFW_KEY_E, "Export", "save picture, curves, table or model", dialogs.export_list)),
+      in_bar(dialog(GLFW_KEY_V, "View", "choose what is shown, and what is compared with what", Dialog::view, open)),
+      in_bar(dialog(GLFW_KEY_E, "Export", "save picture, curves, table or model", Dialog::exports, open)),
       help,
       with_state(
           command(GLFW_KEY_SPACE, "Stop", "stop blocks, curves, numbers and a replay to look back; continue",
@@ -153,14 +143,16 @@ std::vector<WindowCommand> DemoApp::make_commands() {
       hint("Tab", "moves a focus through the buttons; Enter or Space presses it"),
       hint("a row", "Shift and click: two models beside the truth; x: takes it out"),
       hint("on the curves", "drag: the moment that is shown; Shift and drag: zoom; wheel: scroll; double click: go on"),
-      when(When::held,
+      with(&WindowCommand::when, When::held,
            keys({GLFW_KEY_LEFT, GLFW_KEY_RIGHT}, "scroll back and forth while the curves stand still", scroll)),
       in_replay(command(GLFW_KEY_BACKSPACE, "Back to the hand", "end the replay and press the block yourself",
                         [this] { use_device(first_device_); })),
-      in_replay(when(When::repeated, command(GLFW_KEY_COMMA, "<", "one sample back; the recording pauses",
-                                             [this] { session_->replay()->step(-1); }))),
-      in_replay(when(When::repeated, command(GLFW_KEY_PERIOD, ">", "one sample forward; the recording pauses",
-                                             [this] { session_->replay()->step(1); }))),
+      in_replay(with(&WindowCommand::when, When::repeated,
+                     command(GLFW_KEY_COMMA, "<", "one sample back; the recording pauses",
+                             [this] { session_->replay()->step(-1); }))),
+      in_replay(with(&WindowCommand::when, When::repeated,
+                     command(GLFW_KEY_PERIOD, ">", "one sample forward; the recording pauses",
+                             [this] { session_->replay()->step(1); }))),
       in_replay(keys({GLFW_KEY_PAGE_UP, GLFW_KEY_PAGE_DOWN}, "2 s back or forward in a recording",
                      [seek](std::size_t key) { seek(key == 0 ? -kSeekStep_s : kSeekStep_s); })),
       in_replay(keys({GLFW_KEY_LEFT_BRACKET, GLFW_KEY_RIGHT_BRACKET}, "play a recording slower or faster",
@@ -168,16 +160,16 @@ std::vector<WindowCommand> DemoApp::make_commands() {
       toggle(GLFW_KEY_L, "Loop", "the faults of the loop", view_.details),
       command(GLFW_KEY_Z, "", "the device's tool is at its rest position: zero it there",
               [this] { session_->start_zeroing(); }),
-      when(When::held, command(GLFW_KEY_G, "", "hold it to let the device push, if A requires it",
-                               [this] {
-                                 if (session_->controls().dead_man == DeadMan::key)
-                                   session_->controls().held_s = steady_now_s();
-                               })),
+      with(&WindowCommand::when, When::held,
+           command(GLFW_KEY_G, "", "hold it to let the device push, if A requires it",
+                   [this] {
+                     if (session_->controls().dead_man == DeadMan::key) session_->controls().held_s = steady_now_s();
+                   })),
       command(GLFW_KEY_HOME, "", "the view as it was at the beginning", [this] { blocks_->camera().go_home(); }),
-      shown_as("+",
-               keys({GLFW_KEY_EQUAL, GLFW_KEY_KP_ADD}, "larger text", [resize](std::size_t) { resize(kTextStep); })),
-      shown_as("-", keys({GLFW_KEY_MINUS, GLFW_KEY_KP_SUBTRACT}, "smaller text",
-                         [resize](std::size_t) { resize(-kTextStep); })),
+      with(&WindowCommand::shown, "+",
+           keys({GLFW_KEY_EQUAL, GLFW_KEY_KP_ADD}, "larger text", [resize](std::size_t) { resize(kTextStep); })),
+      with(&WindowCommand::shown, "-",
+           keys({GLFW_KEY_MINUS, GLFW_KEY_KP_SUBTRACT}, "smaller text", [resize](std::size_t) { resize(-kTextStep); })),
       command(GLFW_KEY_ESCAPE, "", "closes lists, questions and this", [this] { close_windows(); }),
       hint("drop a file", "loads a model; recordings and other programs' tables: trains or tests on them"),
       {.keys = {GLFW_KEY_Q}, .help = "ends the program", .run = [this](std::size_t) { close(); }, .control = true}};
@@ -214,8 +206,8 @@ void DemoApp::stop_or_go_on() {
 
 // The largest error of the test; of this session, when that is shown already; and back.
 void DemoApp::use_worst(std::size_t slot) {
-  const bool had_test = view_.worst && view_.worst->slot == slot && view_.worst->of_test;
-  const bool had_session = view_.worst && view_.worst->slot == slot && !view_.worst->of_test;
+  const bool had = view_.worst && view_.worst->slot == slot;
+  const bool had_test = had && view_.worst->history, had_session = had && !view_.worst->history;
   leave_worst();
   if (had_session) return view_.time.run();
   actions_.select(slot);

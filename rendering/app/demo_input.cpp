@@ -165,8 +165,7 @@ double DemoApp::limited_depth_m(double requested_m) const {
 std::optional<std::size_t> DemoApp::block_at(const ImVec2& point) const {
   const SceneArea& area = layout_.scene;
   if (!area.holds(point)) return std::nullopt;
-  return blocks_->cell_at({point.x - area.at.x, point.y - area.at.y}, std::max<std::size_t>(shown_.blocks.size(), 1),
-                          {area.size.x, area.size.y});
+  return blocks_->cell_at({point.x - area.at.x, point.y - area.at.y}, block_count(), {area.size.x, area.size.y});
 }
 
 void DemoApp::lift_tool() {
@@ -182,9 +181,8 @@ void DemoApp::begin_stroke(const ImVec2& mouse) {
   stroke_ = Stroke{*block, mouse.y, false};
   if (!view_.exhibit.on) return;
   const SceneArea& area = layout_.scene;
-  const std::size_t count = std::max<std::size_t>(shown_.blocks.size(), 1);
   stroke_->from_px =
-      area.at.y + blocks_->on_screen(*block, count, {0.0F, 0.0F, 0.0F}, glm::vec2(area.size.x, area.size.y)).y;
+      area.at.y + blocks_->on_screen(*block, block_count(), {0.0F, 0.0F, 0.0F}, {area.size.x, area.size.y}).y;
 }
 
 // Moves the tool with the pointer, in every frame. The depth that the hand aims at is the way down from the beginning
@@ -200,12 +198,11 @@ void DemoApp::follow_stroke() {
     lift_tool();
     return;
   }
-  const glm::vec2 size(area.size.x, area.size.y);
-  const std::size_t count = std::max<std::size_t>(shown_.blocks.size(), 1);
+  const std::size_t block = std::min(stroke_->block, block_count() - 1);
   const float y = std::clamp(mouse_.y, area.at.y, area.at.y + area.size.y);
   const float room_px = std::max(kReach * (area.at.y + area.size.y - stroke_->from_px), kLeastReach * area.size.y);
   double m_per_px =
-      static_cast<double>(kMouseGain * blocks_->depth_per_pixel(std::min(stroke_->block, count - 1), count, size));
+      static_cast<double>(kMouseGain * blocks_->depth_per_pixel(block, block_count(), {area.size.x, area.size.y}));
   const double known_m = session_->models().trained_depth_m();
   if (std::isfinite(known_m)) m_per_px = std::max(m_per_px, known_m / static_cast<double>(room_px));
   tool->set_target(limited_depth_m(m_per_px * static_cast<double>(y - stroke_->from_px)), steady_now_s());

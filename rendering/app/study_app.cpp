@@ -6,7 +6,6 @@
 #include <cctype>
 #include <utility>
 
-#include "engine/live/pacer.h"
 #include "rendering/panels/panel.h"
 #include "scenes/scene/scene.h"
 
@@ -28,27 +27,6 @@ Result<std::unique_ptr<StudyApp>> StudyApp::create(const WindowRequest& asked, c
   if (!window) return window.error();
   std::unique_ptr<StudyApp> app(new StudyApp);
   app->window_ = std::move(*window);
-  std::shared_ptr<const StrokePair> strokes;
-  if (prepare) {
-    glfwSetWindowTitle(app->window_->handle(), "Palpate: the strokes are prepared, one moment ...");
-    app->ui_ = std::make_unique<UiContext>(app->window_->handle());
-    for (int i = 0; i < 2; ++i) {  // a new window may lose its first frame
-      glfwPollEvents();
-      app->draw();
-      app->window_->show_frame();
-    }
-    app->ui_.reset();
-    app->style_ = {};
-    auto made = prepare();
-    if (!made) return made.error();
-    strokes = std::move(*made);
-    glfwSetWindowTitle(app->window_->handle(), "Palpate");
-  }
-  auto study = LiveStudy::open(device, realtime, std::move(strokes));
-  if (!study) return study.error();
-  app->study_ = std::move(*study);
-  // Removes the force; the answers so far are in the file.
-  Window::at_loss_of_display([&owner = app->study_] { owner.reset(); });
   GLFWwindow* handle = app->window_->handle();
   glfwSetWindowUserPointer(handle, app.get());
   glfwSetKeyCallback(handle, [](GLFWwindow* from, int key, int, int action, int) {
@@ -59,6 +37,22 @@ Result<std::unique_ptr<StudyApp>> StudyApp::create(const WindowRequest& asked, c
   });
   // After these callbacks: ImGui installs its own and calls them.
   app->ui_ = std::make_unique<UiContext>(handle);
+  std::shared_ptr<const StrokePair> strokes;
+  if (prepare) {
+    for (int i = 0; i < 2; ++i) {  // a new window may lose its first frame
+      glfwPollEvents();
+      app->draw();
+      app->window_->show_frame();
+    }
+    auto made = prepare();
+    if (!made) return made.error();
+    strokes = std::move(*made);
+  }
+  auto study = LiveStudy::open(device, realtime, std::move(strokes));
+  if (!study) return study.error();
+  app->study_ = std::move(*study);
+  // Removes the force; the answers so far are in the file.
+  Window::at_loss_of_display([&owner = app->study_] { owner.reset(); });
   return app;
 }
 
@@ -169,7 +163,7 @@ void StudyApp::draw_intervals(const StudyView& view) {
     const Rgb colour = view.interval == interval ? reference_colour(style_.theme()) : style_.colours().raised;
     ImGui::PushStyleColor(ImGuiCol_Button, paint(colour));
     const char label[2] = {"R12"[interval], '\0'};
-    const bool early = last_ != view.state || steady_now_s() < answers_from_s_;
+    const bool early = last_ != view.state || slip_left_s_ > 0.0;
     if (button(label, GLFW_KEY_0 + interval, {side, side}) && interval > 0 && !early) session()->answer(interval == 2);
     ImGui::PopStyleColor();
     ImGui::SameLine(0.0F, 0.3F * side);
@@ -182,7 +176,7 @@ void StudyApp::draw_intervals(const StudyView& view) {
 void StudyApp::draw_choices(const StudyView& view) {
   // Nobody decides within a quarter of a second after the last push.
   constexpr double kSlip_s = 0.25;
-  if (view.state == StudyState::answering && last_ != view.state) answers_from_s_ = steady_now_s() + kSlip_s;
+  slip_left_s_ = last_ != view.state ? kSlip_s : slip_left_s_ - window_->frame_s();
   last_ = view.state;
   StudySession& shown = *session();
   if (view.rest_ticks_left > 0) {

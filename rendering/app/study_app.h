@@ -52,9 +52,9 @@ class StudyApp {
   std::unique_ptr<LiveStudy> study_;
   std::unique_ptr<UiContext> ui_;
   UiStyle style_;
-  std::vector<int> pressed_;     // since the last frame
-  bool asks_end_ = false;        // whether to end the session
-  double answers_from_s_ = 0.0;  // steady clock; earlier ones are slips of the finger
+  std::vector<int> pressed_;  // since the last frame
+  bool asks_end_ = false;     // whether to end the session
+  double slip_left_s_ = 0.0;  // an answer within it is a slip of the finger
   StudyState last_ = StudyState::consent;
   // The code so far. With slow frames a text field of Dear ImGui sometimes loses the Enter after the code.
   std::string code_, problem_;

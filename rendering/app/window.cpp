@@ -231,13 +231,16 @@ Status Window::save_frame(const std::string& path, bool overwrite) {
 }
 
 void Window::show_frame() {
+  constexpr double kLongest_s = 0.1;
   glfwSwapBuffers(window_);
-  if (paced_by_display_) return;
   SteadyPacer clock;
-  const std::int64_t now_ns = clock.now_ns();
-  // After a late frame the schedule starts again, so that no burst of frames follows.
-  next_frame_ns_ = std::max(next_frame_ns_ + kFrame_ns, now_ns);
-  clock.wait_until(next_frame_ns_);
+  if (!paced_by_display_) {
+    // After a late frame the schedule starts again, so that no burst of frames follows.
+    next_frame_ns_ = std::max(next_frame_ns_ + kFrame_ns, clock.now_ns());
+    clock.wait_until(next_frame_ns_);
+  }
+  const std::int64_t before_ns = std::exchange(shown_ns_, clock.now_ns());
+  frame_s_ = std::min(1e-9 * static_cast<double>(shown_ns_ - before_ns), kLongest_s);
 }
 
 }  // namespace palpate

@@ -42,6 +42,8 @@ class Window {
   void clear(const Rgb& colour) const;
   // Shows the frame and waits for the next one: until the display is ready if the driver waits for it, else 1/60 s.
   void show_frame();
+  // Duration of the last frame for what lasts a moment, at most 0.1 s: a slow frame does not cut it short.
+  double frame_s() const noexcept { return frame_s_; }
   // Saves the frame as a PNG file and shows it. Errors: the file exists and `overwrite` is false; it cannot be written.
   Status save_frame(const std::string& path, bool overwrite);
 
@@ -51,7 +53,8 @@ class Window {
 
   GLFWwindow* window_;
   bool paced_by_display_ = false;
-  std::int64_t next_frame_ns_ = 0;
+  std::int64_t next_frame_ns_ = 0, shown_ns_ = 0;
+  double frame_s_ = 0.0;
 };
 
 }  // namespace palpate

@@ -36,9 +36,8 @@ constexpr std::pair<int, const char*> kKeyNames[] = {
 // The room of a dialog: the width of the picture, so that the panel stays visible beside it.
 ImVec2 dialog_room() { return {lay_out(ImGui::GetIO().DisplaySize).scene.size.x, ImGui::GetIO().DisplaySize.y}; }
 
-// Begins a dialog in the middle of its room, if it is open. Call ImGui::End if this returns true.
-bool begin_dialog(const char* title, bool& open) {
-  if (!open) return false;
+// Begins a dialog in the middle of its room. Call ImGui::End afterwards.
+void begin_dialog(const char* title, bool& open) {
   const ImVec2 all = dialog_room();
   const float margin = ImGui::GetFontSize();
   ImGui::SetNextWindowPos({0.5F * all.x, 0.5F * all.y}, ImGuiCond_Always, {0.5F, 0.5F});
@@ -47,6 +46,14 @@ bool begin_dialog(const char* title, bool& open) {
                ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoSavedSettings |
                    ImGuiWindowFlags_NoMove);
   if (ImGui::IsWindowAppearing()) ImGui::SetWindowFocus();
+}
+
+// Begins it if it is open. Call ImGui::End if this returns true.
+bool begin_dialog(const char* title, Dialogs& dialogs, Dialog one) {
+  bool open = dialogs.open == one;
+  if (!open) return false;
+  begin_dialog(title, open);
+  if (!open) dialogs.open = Dialog::none;
   return true;
 }
 
@@ -59,31 +66,22 @@ bool list_entry(const std::string& text, bool selected = false, bool enabled = t
   return chosen || (enabled && ImGui::IsItemFocused() && enter_pressed());
 }
 
-// Explains the picture, and lists the commands in two columns, in one with large texts.
+// Explains the picture, and lists the commands.
 void draw_help(ViewState& view, const std::vector<WindowCommand>& commands) {
-  if (!begin_dialog("Help", view.dialogs.help)) return;
-  const float unit = ImGui::GetFontSize(), all = dialog_room().x;
-  float keys = 0.0F, text = 0.0F;
-  for (const WindowCommand& command : commands) {
-    keys = std::max(keys, ImGui::CalcTextSize(shown_keys(command).c_str()).x);
-    text = std::max(text, ImGui::CalcTextSize(command.help.c_str()).x);
-  }
-  const float half = 0.5F * all - 3.0F * unit - keys;
-  const bool one = half < 12.0F * unit;
-  text = std::min(text, one ? all - 5.0F * unit - keys : half);
-  for (const char* sentence : kPictureHelp) ImGui::TextUnformatted(in_lines(sentence, all - 4.0F * unit).c_str());
+  if (!begin_dialog("Help", view.dialogs, Dialog::help)) return;
+  const float unit = ImGui::GetFontSize(), all = dialog_room().x - 4.0F * unit;
+  const int columns = all > 45.0F * unit ? 2 : 1;
+  float keys = 0.0F;
+  for (const WindowCommand& command : commands)
+    keys = std::max(keys, ImGui::CalcTextSize(shown_keys(command).c_str()).x + unit);
+  for (const char* sentence : kPictureHelp) ImGui::TextUnformatted(in_lines(sentence, all).c_str());
   ImGui::Separator();
-  if (ImGui::BeginTable("keys", one ? 2 : 4, ImGuiTableFlags_NoSavedSettings)) {
-    for (int column = 0; column < (one ? 2 : 4); ++column)
-      ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthFixed, column % 2 == 0 ? keys + 0.5F * unit : text);
-    const std::size_t rows = one ? commands.size() : (commands.size() + 1) / 2;
-    for (std::size_t row = 0; row < rows; ++row) {
-      for (std::size_t i = row; i < commands.size(); i += rows) {
-        ImGui::TableNextColumn();
-        ImGui::TextUnformatted(shown_keys(commands[i]).c_str());
-        ImGui::TableNextColumn();
-        ImGui::TextWrapped("%s", commands[i].help.c_str());
-      }
+  if (ImGui::BeginTable("keys", columns)) {
+    for (const WindowCommand& command : commands) {
+      ImGui::TableNextColumn();
+      ImGui::TextUnformatted(shown_keys(command).c_str());
+      ImGui::SameLine(keys);
+      ImGui::TextUnformatted(in_lines(command.help, all / static_cast<float>(columns) - keys - unit).c_str());
     }
     ImGui::EndTable();
   }
@@ -92,7 +90,7 @@ void draw_help(ViewState& view, const std::vector<WindowCommand>& commands) {
 
 // The scenes with a material, in the order of what they show.
 void draw_scene_list(const WindowView& shown, ViewState& view, const WindowActions& actions) {
-  if (!begin_dialog("Scenes", view.dialogs.scene_list)) return;
+  if (!begin_dialog("Scenes", view.dialogs, Dialog::scenes)) return;
   static const std::vector<Scene> scenes = [] {
     std::vector<Scene> all;
     const auto names = scene_names();
@@ -103,7 +101,7 @@ void draw_scene_list(const WindowView& shown, ViewState& view, const WindowActio
   }();
   for (const Scene& scene : scenes) {
     if (list_entry(scene.title + "###" + scene.name, scene.name == shown.scene)) {
-      view.dialogs.scene_list = false;
+      view.dialogs.open = Dialog::none;
       actions.use_scene(scene.name);
     }
     tip(scene.description.c_str());
@@ -114,17 +112,17 @@ void draw_scene_list(const WindowView& shown, ViewState& view, const WindowActio
 }
 
 void draw_export_list(ViewState& view, const WindowActions& actions) {
-  if (!begin_dialog("Export", view.dialogs.export_list)) return;
+  if (!begin_dialog("Export", view.dialogs, Dialog::exports)) return;
   for (int i = 0; i < static_cast<int>(std::size(kExports)); ++i) {
     if (!list_entry(kExports[i], i == 0)) continue;
-    view.dialogs.export_list = false;
+    view.dialogs.open = Dialog::none;
     actions.save(i);
   }
   ImGui::End();
 }
 
 void draw_view_list(ViewState& view, const WindowActions& actions) {
-  if (!begin_dialog("View", view.dialogs.view_list)) return;
+  if (!begin_dialog("View", view.dialogs, Dialog::view)) return;
   for (const WindowChoice& choice : actions.choices()) {
     if (choice.names.empty()) continue;
     ImGui::PushID(choice.key);
@@ -172,8 +170,9 @@ std::string recording_roles_words(const RecordingRoles& roles) {
 
 void draw_recording_roles(ViewState& view, const WindowActions& actions) {
   RecordingRoles& roles = view.dialogs.recording_roles;
-  bool open = roles.any();
-  if (!begin_dialog(roles.problem.empty() ? "Recordings" : "Not a recording", open)) return;
+  if (!roles.any()) return;
+  bool open = true;
+  begin_dialog(roles.problem.empty() ? "Recordings" : "Not a recording", open);
   ImGui::PushTextWrapPos(std::min(0.8F * dialog_room().x, 42.0F * ImGui::GetFontSize()));
   if (!roles.problem.empty()) {
     ImGui::TextUnformatted(roles.problem.c_str());
@@ -209,7 +208,7 @@ bool pick(FilePicker& picker, const fs::path& path, const WindowActions& actions
 
 void draw_file_picker(ViewState& view, const WindowActions& actions) {
   FilePicker& picker = view.dialogs.picker;
-  if (!begin_dialog("Open a file", view.dialogs.file_list)) return picker.folder.clear();
+  if (!begin_dialog("Open a file", view.dialogs, Dialog::files)) return picker.folder.clear();
   std::error_code error;
   if (picker.folder.empty()) (void)pick(picker, fs::current_path(error), actions);
   const ImVec2 all = dialog_room();
@@ -233,18 +232,19 @@ void draw_file_picker(ViewState& view, const WindowActions& actions) {
   if (picker.files.empty()) ImGui::TextDisabled("nothing here that can be opened");
   ImGui::EndChild();
   ImGui::End();
-  if (chosen && pick(picker, *chosen, actions)) view.dialogs.file_list = false;
+  if (chosen && pick(picker, *chosen, actions)) view.dialogs.open = Dialog::none;
 }
 
 void draw_device_list(ViewState& view, const std::string& in_use, const WindowActions& actions) {
-  if (!begin_dialog("Device", view.dialogs.device_list)) return;
+  if (!begin_dialog("Device", view.dialogs, Dialog::devices)) return;
+  if (ImGui::IsWindowAppearing()) actions.look_for_devices();
   if (view.devices.empty()) ImGui::TextDisabled("looking for devices ...");
   for (const DeviceDescription& device : view.devices) {
     const bool own = device.name == in_use;
     const bool usable = own || device.problem.empty();
     if (list_entry(device.name, own, usable)) {
       actions.use_device(device.name);
-      view.dialogs.device_list = false;
+      view.dialogs.open = Dialog::none;
     }
     ImGui::SameLine(8.0F * ImGui::GetFontSize());
     ImGui::PushTextWrapPos(40.0F * ImGui::GetFontSize());

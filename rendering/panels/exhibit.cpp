@@ -170,10 +170,11 @@ bool Exhibit::update(const WindowView& shown, ViewState& view, const WindowActio
   read_ticks(shown);
   begin_reveal(shown);
   // Outside attract and press, the tool is kept out of the block, so that the visitor cannot press it.
-  view.exhibit.tool_is_held = game_.state() != State::attract && game_.state() != State::press;
+  const bool pressing = game_.state() == State::press && game_.lifted();
+  view.exhibit.tool_is_held = game_.state() != State::attract && !pressing;
   if (view.exhibit.tool_is_held) actions.lift_tool();
   // During a round the simulated hand must not press, even if the visitor does not move.
-  if (game_.state() == State::press) actions.hold_tool();
+  if (pressing) actions.hold_tool();
   view.exhibit.blind = game_.state() == State::press;
   view.exhibit.close_up = game_.state() == State::reveal;
   view.settings.blocks = 2;
@@ -217,8 +218,7 @@ void Exhibit::read_ticks(const WindowView& shown) {
 void Exhibit::choose_attraction(const WindowView& shown) {
   if (repeats_ && reveal_.done(shown.health.newest.loop_time_s - kHeld_s)) {
     repeats_ = false;
-    best_.clear();
-    worst_.clear();
+    best_ = worst_ = {};
   }
   if (ready_ || !shown.settled) return;
   attraction_ = ExhibitGame::line_up_of(ready_models(shown), has_reference(shown), false);
@@ -281,8 +281,7 @@ void Exhibit::begin(const WindowView& shown) {
 void Exhibit::forget(ViewState& view, const WindowActions& actions) {
   game_.reset();
   ready_ = repeats_ = farewell_ = false;
-  best_.clear();
-  worst_.clear();
+  best_ = worst_ = {};
   language_ = 0;
   host_ = false;
   actions.reset_figures();

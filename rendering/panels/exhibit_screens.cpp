@@ -54,6 +54,11 @@ struct Exhibit::Screens {
     ImGui::TextUnformatted(in_lines(text, ImGui::GetContentRegionAvail().x).c_str());
     exhibit.said_.push_back(text);
   }
+  // As large as there is room for.
+  void say_long(const std::string& text) {
+    const bool low = layout.panel.size.y < 20.0F * height_of(style.fonts().heading);
+    say_in(low ? style.fonts().body : style.fonts().heading, style.colours().text, text);
+  }
   void say_in(ImFont* font, const Rgb& colour, const std::string& text) {
     ImGui::PushStyleColor(ImGuiCol_Text, paint(colour));
     ImGui::PushFont(font);
@@ -143,7 +148,7 @@ struct Exhibit::Screens {
     if (!exhibit.knows_pair()) return draw_learning();
     if (button(words()("play"), "1")) return exhibit.begin(shown);
     space(0.6F);
-    say(words()(exhibit.shows_worst() ? "attract_worst" : "attract_best"));
+    say_long(words()(exhibit.shows_worst() ? "attract_worst" : "attract_best"));
     draw_difference(exhibit.attract_trace(), exhibit.times_.press_s);
   }
 
@@ -158,7 +163,7 @@ struct Exhibit::Screens {
 
   void draw_press() {
     say_quietly(words()("round", std::to_string(game.level() + 1), std::to_string(game.rounds().size())));
-    say(words()("hint_" + kind_of(game.computer()), centres_of(game.computer())));
+    say_long(words()("hint_" + kind_of(game.computer()), centres_of(game.computer())));
     draw_moments(game.computer(), {ImGui::GetContentRegionAvail().x, 2.4F * body()});
     if (game.has_force()) {
       const int chosen = pair_of_buttons("left", "←", "right", "→", game.chosen_left() ? 1 : 2);
@@ -266,7 +271,11 @@ struct Exhibit::Screens {
       exhibit.language_ = next;
     if (game.state() == State::attract || left_s > exhibit.times_.warn_s) return;
     ImGui::SameLine();
-    say(words()("countdown", std::to_string(static_cast<int>(std::ceil(std::max(0.0, left_s))))));
+    const std::string text = words()("countdown", std::to_string(static_cast<int>(std::ceil(std::max(0.0, left_s)))));
+    // More lines begin higher.
+    const float more = text_size(style.fonts().body, in_lines(text, ImGui::GetContentRegionAvail().x)).y - body();
+    ImGui::SetCursorPosY(ImGui::GetCursorPosY() - more);
+    say(text);
   }
 
   // The host's figures, at the upper edge of the picture.

@@ -13,8 +13,7 @@ namespace {
 void draw_centres(const ModelsView& models, ViewState& view, const WindowActions& actions) {
   std::vector<std::size_t> slots = models.listed();
   std::erase_if(slots, [&](std::size_t slot) { return !models.slots[slot].takes_centres; });
-  const bool refitting =
-      std::any_of(slots.begin(), slots.end(), [&](std::size_t slot) { return models.slots[slot].refitting; });
+  const bool refitting = std::ranges::any_of(slots, [&](std::size_t slot) { return models.slots[slot].refitting; });
   ImGui::AlignTextToFramePadding();
   ImGui::TextUnformatted("centres");
   ImGui::SameLine();

@@ -54,7 +54,7 @@ void quiet_words(const std::string& text);
 // Begins an ImGui window that fills `area`. Call ImGui::End afterwards.
 void begin_panel(const char* name, const SceneArea& area);
 void section_title(const UiStyle& style, const char* title);
-// A tooltip for the last item, below or above it.
+// A tooltip for the last item, above or below it; one of several lines beside the window, not over what it explains.
 void tip(const char* text);
 
 // The share of the panel's width for what stands left of a plot against depth or force.

@@ -66,6 +66,7 @@ struct Drawing {
   }
 
   void draw_titles_of_force(float width) const {
+    ImGui::BeginGroup();
     section_title(style, "FORCE");
     ImGui::SameLine();
     std::string words = shown.reference_words;
@@ -79,7 +80,8 @@ struct Drawing {
     const float room = width - ImGui::GetCursorPosX();
     const bool brief = models().compared && ImGui::CalcTextSize(words.c_str()).x > room;
     ImGui::TextDisabled("%s", fitting(brief ? "of " + models().reference_name : words, room).c_str());
-    tip((words + "\nForce of every model, and in green what they are compared with.\n"
+    ImGui::EndGroup();
+    tip((words + "\nForce of every model, and on top what they are compared with.\n"
                  "The grey band is one just noticeable difference (JND) to either side.\n"
                  "Marks at the top: missed deadlines, and in red faults (L lists them).\n"
                  "Drag: blocks and numbers show that moment. Shift and drag: zoom. Wheel: scroll back.\n"
@@ -92,6 +94,7 @@ struct Drawing {
   }
 
   void draw_titles_of_error() const {
+    ImGui::BeginGroup();
     section_title(style, predicts() ? "PREDICTED ERROR / JND" : "DIFFERENCE / JND");
     ImGui::SameLine();
     if (models().out_of_domain()) {
@@ -103,6 +106,7 @@ struct Drawing {
     } else {
       quiet_words("outside the band most people notice it");
     }
+    ImGui::EndGroup();
     tip("Model minus reference, mean over 50 ms, in just noticeable differences: inside the band few people notice "
         "it.\n"
         "Faint marks: single ticks outside.");
@@ -132,7 +136,7 @@ struct Drawing {
   }
 
   // Draws force against depth: the reference with its band, and the active model.
-  void draw_loops(const ImVec2& size, double scale_N) const {
+  void draw_loops(const ImVec2& size, double scale_N) {
     const ForceHistory& history = *shown.history;
     std::size_t first = history.first_at(end_s - view.time.shown_s);
     const std::size_t end = history.first_at(end_s);
@@ -170,11 +174,28 @@ struct Drawing {
       extend(model_points, point.depth_m, point.force_N[models().selected]);
     }
     flush();
-    const HistoryPoint& now = models().now;
-    const float now_N = models().active() != nullptr ? now.force_N[models().selected] : now.reference_N;
-    if (!models().stands || std::isnan(now_N)) return;
-    plot.list().AddCircleFilled({plot.x_px(1e3 * now.depth_m), plot.y_px(now_N)}, 4.0F * scale(),
-                                ink(style.colours().text));
+    const auto at = [&](const HistoryPoint& point) {
+      const float force_N = models().active() != nullptr ? point.force_N[models().selected] : point.reference_N;
+      return ImVec2(plot.x_px(1e3 * point.depth_m), plot.y_px(force_N));
+    };
+    if (plot.hovered() || (view.time.dragging && plot.owns_drag())) {
+      // The moment whose point is nearest to the mouse.
+      const ImVec2 mouse = ImGui::GetIO().MousePos;
+      float least_px = 1e6F;
+      for (std::size_t i = first; i < end; i += step) {
+        const ImVec2 point = at(history[i]);
+        const float away_px = std::hypot(point.x - mouse.x, point.y - mouse.y);
+        if (!history[i].in_contact || !(away_px < least_px)) continue;
+        least_px = away_px;
+        view.time.hover_s = history[i].loop_time_s;
+        hovered = true;
+      }
+      if (hovered || !ImGui::IsMouseDown(ImGuiMouseButton_Left)) drag_time(view.time, plot, view.time.hover_s, end_s);
+    }
+    const HistoryPoint* under = history.last_until(view.time.hover_s);
+    const HistoryPoint* marked = under != nullptr ? under : models().stands ? &models().now : nullptr;
+    if (marked != nullptr && !std::isnan(at(*marked).y))
+      plot.list().AddCircleFilled(at(*marked), 4.0F * scale(), ink(style.colours().text));
   }
 
   void draw_force(const ImVec2& size, double scale_N) {

@@ -14,7 +14,7 @@ using Slot = std::size_t;
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
-double with_samples(const ModelView& model, double value) { return model.errors.samples > 0 ? value : kNone; }
+double if_judged(const ModelView& model, double value) { return model.is_judged() ? value : kNone; }
 
 // Forces are those of the last tick of the curves.
 double error_now_N(const ModelsView& models, Slot slot) {
@@ -27,7 +27,7 @@ std::string two_decimals(double value) { return fixed(value, 2); }
 std::string share(double percent) { return fixed(0.01 * std::floor(100.0 * percent), 2); }
 std::string signed_mN(double value_N) {
   const std::string text = fixed(1e3 * value_N, 0);
-  return text.front() == '-' ? text : "+" + text;
+  return text == "-0" ? "+0" : text.front() == '-' ? text : "+" + text;
 }
 
 struct Column {
@@ -50,7 +50,7 @@ constexpr Column kTable[kColumns] = {
      "Click: shows the moment of the largest error. The headline, the big number and the plot have this number.",
      "12.34", 0,
      [](const ModelsView& models, Slot slot) {
-       return with_samples(models.slots[slot], models.slots[slot].errors.p99_error_over_jnd);
+       return if_judged(models.slots[slot], models.slots[slot].errors.p99_error_over_jnd);
      },
      jnd_text},
     {"% in JND",
@@ -58,7 +58,7 @@ constexpr Column kTable[kColumns] = {
      "With more centres it mostly grows, while the largest errors (99 %) may grow, too.",
      "100.00", 4,
      [](const ModelsView& models, Slot slot) {
-       return with_samples(models.slots[slot], 100.0 * models.slots[slot].errors.within_jnd);
+       return if_judged(models.slots[slot], 100.0 * models.slots[slot].errors.within_jnd);
      },
      share},
     {"ns",
@@ -113,12 +113,10 @@ void draw_heading(int column, TableState& sort) {
   const float x = column == kName ? at.x : at.x + room - width;
   ImGui::GetWindowDrawList()->AddText({x, at.y + sign}, colour, kTable[column].heading);
   if (sort.column != column) return;
-  // A small triangle above the heading, which points up where the values rise.
-  const float middle = x + 0.5F * width, size = 0.22F * ImGui::GetFontSize();
-  const float tip_px = sort.rising ? at.y : at.y + size, base_px = sort.rising ? at.y + size : at.y;
-  const float side = sort.rising ? size : -size;
-  ImGui::GetWindowDrawList()->AddTriangleFilled({middle, tip_px}, {middle + side, base_px}, {middle - side, base_px},
-                                                colour);
+  // A small sign above the heading, which points up where the values rise.
+  const float size = 0.5F * ImGui::GetFontSize();
+  ImGui::GetWindowDrawList()->AddText(ImGui::GetFont(), size, {x + 0.5F * (width - size), at.y - 0.2F * size}, colour,
+                                      sort.rising ? "▲" : "▼");
 }
 
 struct Rows {

@@ -113,18 +113,23 @@ void draw_mark(ImDrawList& list, const ImVec2& middle, float radius, bool paper,
 
 void tip(const char* text) {
   if (!ImGui::IsItemHovered()) return;
-  const ImVec2 low = ImGui::GetItemRectMin();
-  const ImVec2 high = ImGui::GetItemRectMax();
-  const ImVec2 all = ImGui::GetIO().DisplaySize;
-  const float gap = 0.3F * ImGui::GetFontSize();
+  const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax(), all = ImGui::GetIO().DisplaySize;
   const ImVec2 padding = ImGui::GetStyle().WindowPadding;
-  const ImVec2 size = ImGui::CalcTextSize(text);
-  const float wide = size.x + 2.0F * padding.x;
-  const float tall = size.y + 2.0F * padding.y;
-  const float x = std::clamp(low.x, 0.0F, std::max(0.0F, all.x - wide));
-  const bool below = high.y + gap + tall <= all.y;
-  ImGui::SetNextWindowPos({x, below ? high.y + gap : low.y - gap - tall});
-  ImGui::SetTooltip("%s", text);
+  const float gap = 0.3F * ImGui::GetFontSize(), room = ImGui::GetWindowPos().x - gap - 2.0F * padding.x;
+  ImVec2 size = ImGui::CalcTextSize(text);
+  // Of several lines.
+  const bool beside = size.y > 1.5F * ImGui::GetFontSize() && room > 20.0F * ImGui::GetFontSize();
+  if (beside && size.x > room) size = ImGui::CalcTextSize(text, nullptr, false, room);
+  const float wide = size.x + 2.0F * padding.x, tall = size.y + 2.0F * padding.y, above = low.y - gap - tall;
+  const float x = beside ? ImGui::GetWindowPos().x - gap - wide : low.x;
+  const float y = beside ? low.y : above >= 0.0F ? above : high.y + gap;
+  ImGui::SetNextWindowPos(
+      {std::clamp(x, 0.0F, std::max(0.0F, all.x - wide)), std::clamp(y, 0.0F, std::max(0.0F, all.y - tall))});
+  ImGui::BeginTooltip();
+  ImGui::PushTextWrapPos(padding.x + size.x + 1.0F);
+  ImGui::TextUnformatted(text);
+  ImGui::PopTextWrapPos();
+  ImGui::EndTooltip();
 }
 
 }  // namespace palpate

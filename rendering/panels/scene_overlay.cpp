@@ -22,7 +22,11 @@ float buttons_height(const UiStyle& style) {
 }
 float replay_height(const WindowView& shown, const UiStyle& style) {
   if (!shown.replay) return 0.0F;
-  return (shown.replay->surface_m != 0.0 ? 4.1F : 2.4F) * height_of(style.fonts().body);
+  return button_px(style) + (shown.replay->surface_m != 0.0 ? 2.7F : 1.0F) * height_of(style.fonts().body);
+}
+// Whether notes have room beside the big number; else they are below the headline.
+bool has_corner(const UiStyle& style, const SceneArea& area) {
+  return area.size.x > 40.0F * height_of(style.fonts().body);
 }
 float big_number_height(const UiStyle& style, float lift) {
   return lift + height_of(style.fonts().big) + 1.9F * height_of(style.fonts().body);
@@ -117,7 +121,7 @@ struct Overlay {
       if (view.worst) {
         const std::string& name = models().slots[view.worst->slot].name;
         ImGui::TextColored(warning, "largest error of %s in %s: %s (Space goes on)", name.c_str(),
-                           view.worst->of_test ? "the test" : "this session", view.worst->words.c_str());
+                           view.worst->history ? "the test" : "this session", view.worst->words.c_str());
       } else {
         ImGui::TextDisabled("drawn twice as deep");
       }
@@ -147,8 +151,9 @@ struct Overlay {
 
   // The error and the time of a model, as in the table.
   std::string figures_of(const ModelView& model) const {
+    if (model.refitting) return "–";
     std::string text;
-    if (model.errors.samples > 0) text = jnd_text(model.errors.p99_error_over_jnd) + " JND";
+    if (model.is_judged()) text = jnd_text(model.errors.p99_error_over_jnd) + " JND";
     if (model.tick_ns() > 0.0) text += (text.empty() ? "" : ", ") + fixed(model.tick_ns(), 0) + " ns";
     return text;
   }
@@ -173,7 +178,7 @@ struct Overlay {
       // Too little room: smaller, then shorter.
       ImFont* font = text_size(fonts().heading, name).x < room ? fonts().heading : fonts().body;
       if (text_size(font, name).x > room) name.erase(std::min(name.find('-'), name.size()));
-      if (text_size(font, name).x > room) name = number_of(slots[i]);
+      if (text_size(font, name).x > room) name = number_of(slots[i]) + (reference ? "truth" : "");
       if (text_size(fonts().body, figures).x > room) figures = figures.substr(0, figures.find(", "));
       if (text_size(fonts().body, figures).x > room) figures.clear();
       const ImVec2 above = text_size(font, name), below = text_size(fonts().body, figures);
@@ -190,7 +195,7 @@ struct Overlay {
                        6.0F, 0, 2.0F);
       }
       text_at(font, at, text_ink(false), name);
-      const bool above_jnd = !reference && model->errors.samples > 0 && model->errors.p99_error_over_jnd > 1.0;
+      const bool above_jnd = !reference && model->is_judged() && model->errors.p99_error_over_jnd > 1.0;
       const ImU32 shade = above_jnd ? ink(text_colour(kAboveJndColour, style.theme())) : text_ink(true);
       text_at(fonts().body, {at.x, at.y + above.y}, shade, figures);
     }
@@ -274,6 +279,8 @@ struct Overlay {
     ImGui::SetNextWindowPos({area.at.x + 2.0F, area.at.y + area.size.y - lift}, ImGuiCond_Always, {0.0F, 1.0F});
     ImGui::SetNextWindowSize({area.size.x - 4.0F, 0.0F});
     ImGui::Begin("over replay", nullptr, kFloating & ~ImGuiWindowFlags_AlwaysAutoResize);
+    ImGui::PushStyleVar(ImGuiStyleVar_FramePadding,
+                        {ImGui::GetStyle().FramePadding.x, 0.5F * (button_px(style) - ImGui::GetFontSize())});
     for (const WindowCommand& command : commands) {
       if (command.label.empty() || !command.replay) continue;
       if (command_button(command)) command.run(0);
@@ -293,6 +300,7 @@ struct Overlay {
     tip("Speed of the replay");
     ImGui::SameLine();
     ImGui::Text("%.2f x", replay.speed);
+    ImGui::PopStyleVar();
     if (replay.surface_m != 0.0) {
       bool moved = replay.surface_moved;
       const std::string label =
@@ -337,10 +345,10 @@ struct Overlay {
   // Draws what has to be said now on plates in the corner at the right of `left_px` and above `bottom_px`, which no
   // block covers; where that is too narrow, below `top_px`.
   void draw_notes(float left_px, float bottom_px, float top_px) const {
-    const bool exhibit = view.exhibit.on, corner = area.at.x + area.size.x - left_px > 15.0F * line();
+    const bool exhibit = view.exhibit.on, corner = has_corner(style, area);
     std::vector<std::pair<std::string, ImU32>> notes;
     for (const Toast& toast : view.toasts)
-      notes.emplace_back(toast.text, ink(toast.problem ? colours().fault : reference_colour(style.theme())));
+      notes.emplace_back(toast.text, ink(toast.problem ? colours().fault : colours().text));
     const std::string warning = exhibit ? "" : data_warning(models());
     if (!warning.empty()) notes.emplace_back(warning, ink(colours().fault));
     if (const std::string hint = exhibit ? "" : press_hint(shown, view); !hint.empty() && notes.empty())
@@ -395,7 +403,8 @@ SceneArea stage_of(const WindowView& shown, const ViewState& view, const UiStyle
   if (view.exhibit.on) return area;
   // At least room for a title, a headline of two lines, and its detail, so that the blocks seldom move.
   const float usual = 3.4F * height_of(style.fonts().body) + 2.0F * height_of(style.fonts().heading);
-  const float above = std::max(usual, headline_of(shown.models.verdict, style, area).below_px - area.at.y);
+  const float notes = has_corner(style, area) ? 0.0F : 3.2F * height_of(style.fonts().body);
+  const float above = std::max(usual, headline_of(shown.models.verdict, style, area).below_px - area.at.y) + notes;
   const float below = big_number_height(style, buttons_height(style) + replay_height(shown, style));
   return {{area.at.x, area.at.y + above}, {area.size.x, std::max(1.0F, area.size.y - above - below)}};
 }

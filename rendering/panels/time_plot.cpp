@@ -154,20 +154,19 @@ double TimePlot::time_under_mouse() const {
 }
 
 // The plot in which a drag began owns it, also where the mouse leaves it.
+void drag_time(CurveTime& time, const LivePlot& plot, double at_s, double end_s) {
+  if (plot.hovered() && ImGui::IsMouseClicked(ImGuiMouseButton_Left)) time.dragging = !ImGui::GetIO().KeyShift;
+  if (!time.dragging || !plot.owns_drag()) return;
+  ImGui::IsMouseDown(ImGuiMouseButton_Left) ? time.drag_to(at_s, end_s) : time.end_drag();
+}
+
 void TimePlot::drag(double oldest_s) {
-  const ImGuiIO& io = ImGui::GetIO();
-  if (hovered() && ImGui::IsMouseClicked(ImGuiMouseButton_Left)) {
-    time_.dragging = !io.KeyShift;
-    if (io.KeyShift) time_.zoom_from_s = time_under_mouse();
-  }
-  const ImVec2 began = io.MouseClickedPos[ImGuiMouseButton_Left];
-  if (began.x < left() || began.x > right() || began.y < top() || began.y > bottom()) return;
-  const bool down = ImGui::IsMouseDown(ImGuiMouseButton_Left);
-  if (time_.dragging && down) time_.drag_to(std::max(oldest_s, time_under_mouse()), end_s_);
-  if (time_.dragging && !down) time_.end_drag();
-  if (std::isnan(time_.zoom_from_s)) return;
+  drag_time(time_, *this, std::max(oldest_s, time_under_mouse()), end_s_);
+  if (hovered() && ImGui::IsMouseClicked(ImGuiMouseButton_Left) && ImGui::GetIO().KeyShift)
+    time_.zoom_from_s = time_under_mouse();
+  if (std::isnan(time_.zoom_from_s) || !owns_drag()) return;
   const float from_px = time_px(time_.zoom_from_s), to_px = time_px(time_under_mouse());
-  if (down) {
+  if (ImGui::IsMouseDown(ImGuiMouseButton_Left)) {
     list().AddRectFilled({std::min(from_px, to_px), top()}, {std::max(from_px, to_px), bottom()},
                          ink(style_.colours().text, 0.10F));
     return;

@@ -58,6 +58,9 @@ class CurveColumns {
   float highest_force_N_ = 0.0F;
 };
 
+// A drag that began in `plot`, without Shift, moves blocks and numbers to `at_s`; its end returns to before.
+void drag_time(CurveTime& time, const LivePlot& plot, double at_s, double end_s);
+
 // The range of a quantity in a column; NaN: there is none.
 using ColumnRange = std::function<Range(const CurveColumn&)>;
 

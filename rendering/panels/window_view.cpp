@@ -67,7 +67,6 @@ ModelsView models_view(const LiveSession& session, const ViewState& view_state, 
     view.slots.push_back({session.models().info(i), session.figures(i)});
   view.selected = session.models().selected();
   view.second = second_of(view, view_state);
-  view.in_contact = session.newest().tick.in_contact;
   view.stands = std::isfinite(until_s);
   const Comparison& comparison = session.comparison();
   view.compared = session.has_reference();
@@ -84,13 +83,7 @@ ModelsView models_view(const LiveSession& session, const ViewState& view_state, 
     view.now = history[0];  // a pause that is longer than the history
   }
   if (session.replay() != nullptr && session.replay()->paused() && !view.stands) show_newest(session, view);
-  if (view.stands) view.in_contact = view.now.in_contact;
   return view;
-}
-
-std::string reference_block(const LiveSession& session) {
-  if (session.comparison().reference() == ReferenceKind::truth) return "the true material";
-  return session.replay() != nullptr ? "as recorded" : "the real block";
 }
 
 }  // namespace
@@ -123,7 +116,7 @@ const ModelView* ModelsView::active() const noexcept {
 
 bool ModelsView::out_of_domain() const noexcept {
   const ModelView* model = active();
-  return in_contact && model != nullptr && model->out_of_domain && !replays_training;
+  return now.in_contact && model != nullptr && model->out_of_domain && !replays_training;
 }
 
 std::string data_warning(const ModelsView& models) {
@@ -138,13 +131,14 @@ BigNumber big_number(const ModelsView& models) {
   const ModelView* active = models.active();
   if (active == nullptr) return big;
   if (!models.compared) {
-    big.error_over_jnd = models.in_contact ? active->predicted_error_N / models.jnd.at(active->force_N) : std::nan("");
+    big.error_over_jnd =
+        models.now.in_contact ? active->predicted_error_N / models.jnd.at(active->force_N) : std::nan("");
     if (!std::isnan(big.error_over_jnd)) big.number = jnd_text(big.error_over_jnd);
     big.what = "of a JND: 95 % bound of the error of " + active->name;
     big.below = models.reference_name;
     return big;
   }
-  if (active->errors.samples > 0 && models.selected != models.reference && !active->refitting) {
+  if (active->is_judged() && models.selected != models.reference) {
     big.error_over_jnd = active->errors.p99_error_over_jnd;
     big.number = jnd_text(big.error_over_jnd);
   }
@@ -153,7 +147,8 @@ BigNumber big_number(const ModelsView& models) {
   const double press = models.now.press_over_jnd[models.selected];
   if (std::isnan(press) || models.selected == models.reference) return big;
   big.press_over_jnd = press;
-  big.below = jnd_text(press) + " in this press";
+  big.below = jnd_text(press) + (models.reference == kReferenceBlock ? "" : " from " + models.reference_name) +
+              " in this press";
   return big;
 }
 
@@ -162,9 +157,8 @@ std::string table_csv(const ModelsView& models) {
   for (const std::size_t slot : models.listed()) {
     const ModelView& one = models.slots[slot];
     const auto number = [](bool known, double value) { return known ? general(value, 6) : std::string(); };
-    csv += one.name + "," + std::to_string(one.centres) + "," +
-           number(one.errors.samples > 0, one.errors.p99_error_over_jnd) + "," +
-           number(one.errors.samples > 0, one.errors.within_jnd) + "," + number(one.tick_ns() > 0.0, one.tick_ns()) +
+    csv += one.name + "," + std::to_string(one.centres) + "," + number(one.is_judged(), one.errors.p99_error_over_jnd) +
+           "," + number(one.is_judged(), one.errors.within_jnd) + "," + number(one.tick_ns() > 0.0, one.tick_ns()) +
            "\n";
   }
   return csv;
@@ -204,7 +198,9 @@ WindowView window_view(const LiveSession& session, const ViewState& view) {
   } else {
     shown.blocks = slots_of_blocks(shown.models, has_truth && blocks > 1, blocks == 2 ? 3 : blocks);
   }
-  shown.reference_block = reference_block(session);
+  shown.reference_block = session.comparison().reference() == ReferenceKind::truth ? "the true material"
+                          : session.replay() != nullptr                            ? "as recorded"
+                                                                                   : "the real block";
   shown.reference_words = session.reference_words();
   shown.usual_force_N = kUsualOverStrongest * session.scene().strongest_press_N;
   shown.usual_depth_m = session.models().trained_depth_m();

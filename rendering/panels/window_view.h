@@ -168,19 +168,14 @@ struct Settings {
   bool operator==(const Settings&) const = default;
 };
 
+enum class Dialog : std::uint8_t { none, help, files, scenes, devices, view, exports };
+
 struct Dialogs {
-  bool help = false;
-  bool file_list = false;   // files to open
-  bool scene_list = false;  // scenes to choose from
-  bool device_list = false;
-  bool view_list = false;    // choices of the display
-  bool export_list = false;  // what can be saved
-  RecordingRoles recording_roles;
+  Dialog open = Dialog::none;      // one at a time
+  RecordingRoles recording_roles;  // a dialog in front of that one
   FilePicker picker;
 
-  bool any() const noexcept {
-    return help || file_list || scene_list || device_list || view_list || export_list || recording_roles.any();
-  }
+  bool any() const noexcept { return open != Dialog::none || recording_roles.any(); }
 };
 
 // The exhibit's control of the picture.
@@ -210,7 +205,7 @@ struct FrameFigures {
 
 // A notice over the picture.
 struct Toast : Notice {
-  double until_s = 0.0;  // window time
+  double left_s = 0.0;
 };
 
 struct ViewState {
@@ -238,13 +233,15 @@ struct ViewState {
 };
 
 // A slot: its model and its errors.
-struct ModelView : ModelInfo, ModelFigures {};
+struct ModelView : ModelInfo, ModelFigures {
+  // Whether the errors are known: there are samples, and no other number of centres is being fitted.
+  bool is_judged() const noexcept { return errors.samples > 0 && !refitting; }
+};
 
 struct ModelsView {
   std::vector<ModelView> slots;
   std::size_t selected = 0;
-  std::optional<std::size_t> second;  // the other of two models that are compared with each other only
-  bool in_contact = false;
+  std::optional<std::size_t> second;            // the other of two models that are compared with each other only
   bool compared = true;                         // there is a reference
   std::size_t reference = kReferenceBlock;      // its slot, if it is a model
   std::string reference_name = "the material";  // the reference in few words
@@ -318,7 +315,7 @@ struct WindowActions {
   std::function<void(std::size_t, int)> refit;  // with this number of centres
   OfText add_model;                             // the name of a method with a size
   std::function<void(const ForceScale&)> scale;
-  std::function<void()> zero_device;
+  std::function<void()> zero_device, look_for_devices;
   std::function<void(double)> seek, set_speed;  // of a replay
   std::function<void(bool)> move_surface;
   OfText use_scene, open, use_device;

@@ -7,6 +7,7 @@
 #include <glm/mat4x4.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
 #include <memory>
 #include <vector>
 
@@ -22,7 +23,6 @@ struct CameraTurn {
   float yaw_rad = 0.0F;
   float pitch_rad = 0.0F;
   float distance = 1.0F;  // factor
-  bool operator==(const CameraTurn&) const = default;
 };
 
 // A camera that orbits a point above the table within limits and moves smoothly to its target.
@@ -38,7 +38,6 @@ class Camera {
   void zoom(float factor);
   // Returns to the basic view.
   void go_home() { turn({}); }
-  CameraTurn turned() const noexcept { return turn_; }
   void turn(const CameraTurn& turn);
   // Moves towards the target, with a time constant of 0.12 s.
   void advance(float seconds);
@@ -47,16 +46,10 @@ class Camera {
   glm::mat4 view_projection(float aspect) const;
 
  private:
-  struct Pose {
-    float yaw_rad = 0.0F;
-    float pitch_rad = 0.3F;
-    float distance_m = 0.4F;
-    float height_m = 0.0F;
-  };
+  // Yaw and pitch, rad; distance, and height of the point, m.
+  using Pose = glm::vec4;
   void aim();  // computes `target_` from `framed_` and `turn_`
-  Pose now_;
-  Pose target_;
-  Pose framed_;
+  Pose now_{0.0F, 0.3F, 0.4F, 0.0F}, target_ = now_, framed_ = now_;
   CameraTurn turn_;
   float radius_m_ = 0.1F;
 };
@@ -111,7 +104,6 @@ class BlockView {
   float width_of_one(std::size_t count, const glm::vec2& size) const;
   // Motion of the tool inwards per pixel downwards, m.
   float depth_per_pixel(std::size_t index, std::size_t count, const glm::vec2& size) const;
-  const glm::vec3& size_m() const noexcept { return size_m_; }
 
  private:
   // What the picture of the static parts depends on.

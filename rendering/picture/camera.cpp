@@ -2,9 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/common.hpp>
 #include <glm/ext/matrix_clip_space.hpp>
 #include <glm/ext/matrix_transform.hpp>
-#include <glm/vec4.hpp>
+#include <glm/vector_relational.hpp>
 
 namespace palpate {
 namespace {
@@ -33,13 +34,10 @@ void Camera::turn(const CameraTurn& turn) {
 
 // Limits the turn as well, so that a turn back has an effect at once.
 void Camera::aim() {
-  target_.height_m = framed_.height_m;
-  target_.yaw_rad = std::clamp(framed_.yaw_rad + turn_.yaw_rad, -kWidest_rad, kWidest_rad);
-  target_.pitch_rad = std::clamp(framed_.pitch_rad + turn_.pitch_rad, kLowest_rad, kHighest_rad);
-  target_.distance_m = std::clamp(framed_.distance_m * turn_.distance, 1.6F * radius_m_, 12.0F * radius_m_);
-  turn_.yaw_rad = target_.yaw_rad - framed_.yaw_rad;
-  turn_.pitch_rad = target_.pitch_rad - framed_.pitch_rad;
-  turn_.distance = target_.distance_m / framed_.distance_m;
+  target_ = {std::clamp(framed_[0] + turn_.yaw_rad, -kWidest_rad, kWidest_rad),
+             std::clamp(framed_[1] + turn_.pitch_rad, kLowest_rad, kHighest_rad),
+             std::clamp(framed_[2] * turn_.distance, 1.6F * radius_m_, 12.0F * radius_m_), framed_[3]};
+  turn_ = {target_[0] - framed_[0], target_[1] - framed_[1], target_[2] / framed_[2]};
 }
 
 void Camera::orbit(float yaw_rad, float pitch_rad) {
@@ -49,24 +47,16 @@ void Camera::orbit(float yaw_rad, float pitch_rad) {
 void Camera::zoom(float factor) { turn({turn_.yaw_rad, turn_.pitch_rad, turn_.distance * factor}); }
 
 void Camera::advance(float seconds) {
-  const float share = 1.0F - std::exp(-std::max(0.0F, seconds) / kEasing_s);
-  now_.yaw_rad += share * (target_.yaw_rad - now_.yaw_rad);
-  now_.pitch_rad += share * (target_.pitch_rad - now_.pitch_rad);
-  now_.distance_m += share * (target_.distance_m - now_.distance_m);
-  now_.height_m += share * (target_.height_m - now_.height_m);
   // Less than a tenth of a pixel in a picture of 1080 lines; the parts at rest are drawn until it ends.
   constexpr float kEnd = 1e-4F;
-  const bool there = std::abs(target_.yaw_rad - now_.yaw_rad) < kEnd &&
-                     std::abs(target_.pitch_rad - now_.pitch_rad) < kEnd &&
-                     std::abs(target_.distance_m - now_.distance_m) < kEnd * target_.distance_m &&
-                     std::abs(target_.height_m - now_.height_m) < kEnd * target_.distance_m;
-  if (there) now_ = target_;
+  now_ += (1.0F - std::exp(-std::max(0.0F, seconds) / kEasing_s)) * (target_ - now_);
+  const glm::vec4 near = kEnd * glm::vec4(1.0F, 1.0F, target_[2], target_[2]);
+  if (glm::all(glm::lessThan(glm::abs(target_ - now_), near))) now_ = target_;
 }
 
 glm::vec3 Camera::eye() const {
-  const float flat = now_.distance_m * std::cos(now_.pitch_rad);
-  return {flat * std::sin(now_.yaw_rad), now_.height_m + now_.distance_m * std::sin(now_.pitch_rad),
-          flat * std::cos(now_.yaw_rad)};
+  const float flat_m = now_[2] * std::cos(now_[1]);
+  return {flat_m * std::sin(now_[0]), now_[3] + now_[2] * std::sin(now_[1]), flat_m * std::cos(now_[0])};
 }
 
 glm::mat4 Camera::view_projection(float aspect) const {
@@ -74,7 +64,7 @@ glm::mat4 Camera::view_projection(float aspect) const {
   const float vertical =
       aspect >= 1.0F ? kFieldOfView_rad : 2.0F * std::atan(std::tan(0.5F * kFieldOfView_rad) / aspect);
   return glm::perspective(vertical, aspect, kNear_m, kFar_m) *
-         glm::lookAt(eye(), glm::vec3(0.0F, now_.height_m, 0.0F), glm::vec3(0.0F, 1.0F, 0.0F));
+         glm::lookAt(eye(), glm::vec3(0.0F, now_[3], 0.0F), glm::vec3(0.0F, 1.0F, 0.0F));
 }
 
 glm::vec2 project(const glm::mat4& view_projection, const glm::vec3& world, const glm::vec2& size) {

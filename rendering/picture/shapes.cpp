@@ -88,10 +88,19 @@ float edge_depth_m(float from_m, float half_m) {
   return kEdge_m - std::sqrt(kEdge_m * kEdge_m - over_m * over_m);
 }
 
-// The x of a column, from half_m to -half_m, denser in the middle.
-float column_m(int i, int columns, float half_m) {
-  const float t = 1.0F - 2.0F * static_cast<float>(i) / static_cast<float>(columns);
-  return half_m * t * (0.25F + 0.75F * std::abs(t));
+// The area at z = 0 from `upper` of x down to `lower`, in columns from half_m to -half_m that are denser in the middle.
+template <typename Upper>
+Mesh strip(float half_m, int columns, const Upper& upper, float lower) {
+  Mesh mesh;
+  for (const bool low : {false, true}) {
+    for (int i = 0; i <= columns; ++i) {
+      const float t = 1.0F - 2.0F * static_cast<float>(i) / static_cast<float>(columns);
+      const float x_m = half_m * t * (0.25F + 0.75F * std::abs(t));
+      mesh.vertices.push_back({{x_m, low ? lower : upper(x_m), 0.0F}, {0.0F, 0.0F, 1.0F}});
+    }
+  }
+  join_rows(mesh, static_cast<std::size_t>(columns) + 1, false);
+  return mesh;
 }
 
 }  // namespace
@@ -124,26 +133,13 @@ Mesh block_sides(const glm::vec2& size_m, float height_m, float top_m, int aroun
 }
 
 Mesh block_section(float half_m, float block_half_m, float height_m, int columns) {
-  Mesh mesh;
-  for (const bool lower : {false, true}) {
-    for (int i = 0; i <= columns; ++i) {
-      const float x_m = column_m(i, columns, half_m);
-      const float y_m = lower ? -height_m : -edge_depth_m(std::abs(x_m), block_half_m);
-      mesh.vertices.push_back({{x_m, y_m, 0.0F}, {0.0F, 0.0F, 1.0F}});
-    }
-  }
-  join_rows(mesh, static_cast<std::size_t>(columns) + 1, false);
-  return mesh;
+  return strip(
+      half_m, columns, [&](float x_m) { return -edge_depth_m(std::abs(x_m), block_half_m); }, -height_m);
 }
 
 Mesh line_mesh(float half_m, int columns) {
-  Mesh mesh;
-  for (const float side : {1.0F, -1.0F}) {
-    for (int i = 0; i <= columns; ++i)
-      mesh.vertices.push_back({{column_m(i, columns, half_m), side, 0.0F}, {0.0F, 0.0F, 1.0F}});
-  }
-  join_rows(mesh, static_cast<std::size_t>(columns) + 1, false);
-  return mesh;
+  return strip(
+      half_m, columns, [](float) { return 1.0F; }, -1.0F);
 }
 
 Mesh lathe_mesh(const std::vector<glm::vec2>& profile, int sides) {

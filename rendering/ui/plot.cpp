@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <initializer_list>
+
+#include "engine/base/text.h"
 
 namespace palpate {
 
@@ -76,6 +77,11 @@ double LivePlot::x_at(float px) const noexcept {
 
 bool LivePlot::hovered() const noexcept { return ImGui::IsMouseHoveringRect(low_, high_) && ImGui::IsWindowHovered(); }
 
+bool LivePlot::owns_drag() const noexcept {
+  const ImVec2 began = ImGui::GetIO().MouseClickedPos[ImGuiMouseButton_Left];
+  return began.x >= left() && began.x <= right() && began.y >= top() && began.y <= bottom();
+}
+
 std::vector<double> LivePlot::ticks(const Range& range, int most) const {
   std::vector<double> values;
   if (axes_.decades) {
@@ -92,10 +98,7 @@ std::vector<double> LivePlot::ticks(const Range& range, int most) const {
 }
 
 std::string LivePlot::label(double value, const char* unit) const {
-  char text[48];
-  std::snprintf(text, sizeof text, "%.7g%s%s", axes_.decades ? std::pow(10.0, value) : value, *unit == '\0' ? "" : " ",
-                unit);
-  return text;
+  return general(axes_.decades ? std::pow(10.0, value) : value, 7) + (*unit == '\0' ? "" : " ") + unit;
 }
 
 void LivePlot::draw_y_axis() const {
@@ -117,7 +120,7 @@ void LivePlot::draw_y_axis() const {
 
 void LivePlot::draw_x_axis() const {
   const float line = ImGui::GetFontSize();
-  auto values = ticks(axes_.x, std::max(1, static_cast<int>(width() / (4.0F * line))));
+  auto values = ticks(axes_.x, std::max(1, static_cast<int>((high_.x - low_.x) / (4.0F * line))));
   std::ranges::reverse(values);  // from the right, because the last label has the unit
   float free_px = high_.x + 2.0F * line;
   const char* unit = axes_.x_unit;

@@ -17,7 +17,7 @@ struct Range {
 
 // The smallest step of 1, 2 or 5 times a power of ten that gives at most `most` intervals.
 double tick_step(double span, int most) noexcept;
-// Rounds up to the next 1, 1.5, 2, 3, 4, 5, 6, 8 or 10 times a power of ten; 1 for values <= 0.
+// Rounds up to the next 1, 1.2, 1.5, 2, 3, 4, 5, 6, 8 or 10 times a power of ten; 1 for values <= 0.
 double round_up(double value) noexcept;
 
 // The same line with fewer points: those within a third of a pixel of it are left out. A software renderer needs as
@@ -53,8 +53,8 @@ class LivePlot {
   float right() const noexcept { return high_.x; }
   float top() const noexcept { return low_.y; }
   float bottom() const noexcept { return high_.y; }
-  float width() const noexcept { return high_.x - low_.x; }
   bool hovered() const noexcept;
+  bool owns_drag() const noexcept;  // the last drag began in it
   ImDrawList& list() const noexcept { return *list_; }
 
   // `start_px`: the x at which a dash begins, on the plot or not.

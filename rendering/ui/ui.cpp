@@ -32,8 +32,7 @@ constexpr const char* kFontFiles[] = {
     "/usr/share/fonts/TTF/DejaVuSans.ttf", "/usr/share/fonts/truetype/liberation/LiberationSans-Regular.ttf"};
 
 // Latin letters and the signs that the panel uses.
-constexpr ImWchar kGlyphs[] = {0x20,   0xFF,   0x2013, 0x2026, 0x2190, 0x2193, 0x2264,
-                               0x2265, 0x25A0, 0x25CF, 0x3BC,  0x3C4,  0};
+constexpr ImWchar kGlyphs[] = {0x20, 0xFF, 0x2013, 0x2026, 0x2190, 0x2193, 0x25B2, 0x25BC, 0x3BC, 0x3C4, 0};
 
 UiLayer layer_of(const ImDrawList& list) {
   const std::string_view owner = list._OwnerName != nullptr ? list._OwnerName : "";

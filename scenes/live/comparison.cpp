@@ -29,18 +29,34 @@ ErrorSummary StreamErrors::summary(const JndLine& jnd) const {
   return summary;
 }
 
-double SustainedError::add(double time_s, double difference_over_jnd) noexcept {
-  const double last_s = samples_[(first_ + count_ + samples_.size() - 1) % samples_.size()].time_s;
-  if (time_s < last_s || time_s - last_s > kSpan_s) count_ = 0;
-  while (count_ == samples_.size() || (count_ > 0 && samples_[first_].time_s <= time_s - kSpan_s)) {
-    sum_ -= samples_[first_].difference;
-    first_ = (first_ + 1) % samples_.size();
-    --count_;
+double SustainedError::add(double time_s, double difference_over_jnd) {
+  constexpr std::size_t kMost = 1000;  // 50 ms at 20 kHz, the fastest recording
+  if (!samples_.empty() && (time_s < samples_.back().first || time_s - samples_.back().first > kSpan_s))
+    samples_.clear();
+  while (!samples_.empty() && (samples_.front().first <= time_s - kSpan_s || samples_.size() == kMost)) {
+    sum_ -= samples_.front().second;
+    samples_.pop_front();
   }
-  if (count_ == 0) sum_ = 0.0;  // discards accumulated rounding errors
-  samples_[(first_ + count_++) % samples_.size()] = {time_s, difference_over_jnd};
+  if (samples_.empty()) sum_ = 0.0;  // discards accumulated rounding errors
+  samples_.emplace_back(time_s, difference_over_jnd);
   sum_ += difference_over_jnd;
-  return sum_ / static_cast<double>(count_);
+  return sum_ / static_cast<double>(samples_.size());
+}
+
+void NoticedErrors::add(HistoryPoint& point, const JndLine& jnd) {
+  constexpr double kPause_s = 0.2;
+  const bool new_press = point.in_contact && !(std::abs(point.time_s - last_contact_s_) < kPause_s);
+  if (point.in_contact) last_contact_s_ = point.time_s;
+  for (std::size_t i = 0; i < slots_.size(); ++i) {
+    Slot& slot = slots_[i];
+    const double difference = point.difference_over_jnd(i, jnd);
+    slot.sustained_over_jnd = slot.error.add(point.time_s, std::isnan(difference) ? 0.0 : difference);
+    if (new_press) slot.press_over_jnd = 0.0;
+    if (std::isnan(difference)) continue;
+    if (point.in_contact) slot.press_over_jnd = std::max(slot.press_over_jnd, std::abs(slot.sustained_over_jnd));
+    point.sustained_over_jnd[i] = static_cast<float>(slot.sustained_over_jnd);
+    point.press_over_jnd[i] = static_cast<float>(slot.press_over_jnd);
+  }
 }
 
 Dent::Dent(const std::vector<FeatureSpec>& features) {
@@ -71,6 +87,7 @@ void Comparison::begin_slot(std::size_t slot) { slots_[slot].dent = Dent(models_
 
 void Comparison::forget_slot(std::size_t slot) {
   slots_[slot] = {};
+  noticed_.forget(slot);
   history_.forget(slot);
 }
 
@@ -98,10 +115,13 @@ void Comparison::add(const LoopSnapshot& snapshot, TickFaultLevel fault_level) {
   point.fault_level = fault_level_ = std::max(fault_level_, fault_level);
   // While a replay is paused, ticks have no new sample.
   const bool fresh = snapshot.samples > 0;
-  if (fresh && set != nullptr) count(point, snapshot, *set, std::clamp(time_s - last_time_s_, 0.0, kLongestStep_s));
+  if (fresh && set != nullptr) {
+    noticed_.add(point, jnd_);
+    count(point, snapshot, *set, std::clamp(time_s - last_time_s_, 0.0, kLongestStep_s));
+  }
   for (std::size_t i = 0; i < slots_.size(); ++i) {
     slots_[i].dent.step(snapshot.tick.depth_m, static_cast<double>(point.force_N[i]),
-                        std::abs(slots_[i].sustained_over_jnd), step_s);
+                        std::abs(noticed_.sustained_over_jnd(i)), step_s);
   }
   if (!fresh) return;
   last_time_s_ = time_s;
@@ -133,25 +153,12 @@ HistoryPoint Comparison::point_of(const LoopSnapshot& snapshot, const PublishedS
   return point;
 }
 
-void Comparison::count(HistoryPoint& point, const LoopSnapshot& snapshot, const PublishedSet& set, double step_s) {
-  // A press ends with a while in the air, not with a loss of contact by noise.
-  constexpr double kPause_s = 0.2;
-  const bool new_press = point.in_contact && !(std::abs(point.time_s - last_contact_s_) < kPause_s);
-  if (point.in_contact) last_contact_s_ = point.time_s;
+void Comparison::count(const HistoryPoint& point, const LoopSnapshot& snapshot, const PublishedSet& set,
+                       double step_s) {
   // Where one model is outside its training domain, the sample counts for no model.
-  bool outside = false;
-  for (const auto& [slot, i] : set.models) {
-    if (!models_.info(slot).other_material && (snapshot.tick.out_of_domain_mask >> i & 1U) != 0) outside = true;
-    const double difference = point.difference_over_jnd(slot, jnd_);
-    const bool known = !std::isnan(difference);
-    Slot& its = slots_[slot];
-    its.sustained_over_jnd = its.sustained.add(point.time_s, known ? difference : 0.0);
-    if (new_press) its.press_over_jnd = 0.0;
-    if (!known) continue;
-    if (point.in_contact) its.press_over_jnd = std::max(its.press_over_jnd, std::abs(its.sustained_over_jnd));
-    point.sustained_over_jnd[slot] = static_cast<float>(its.sustained_over_jnd);
-    point.press_over_jnd[slot] = static_cast<float>(its.press_over_jnd);
-  }
+  const bool outside = std::ranges::any_of(set.models, [&](const auto& model) {
+    return !models_.info(model.first).other_material && (snapshot.tick.out_of_domain_mask >> model.second & 1U) != 0;
+  });
   // A snapshot of an earlier set lacks the models that joined since.
   if (&set != models_.newest_set() || std::isnan(point.reference_N) || outside || !point.counts) return;
   counted_s_ += step_s;

@@ -8,9 +8,11 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <limits>
 #include <map>
 #include <memory>
+#include <ranges>
 #include <utility>
 #include <vector>
 
@@ -83,13 +85,8 @@ class ForceHistory {
   }
   // Index of the first point at `loop_time_s` or later; size() if there is none. O(log size).
   std::size_t first_at(double loop_time_s) const noexcept {
-    std::size_t from = 0;
-    for (std::size_t to = size_; from < to;) {
-      const std::size_t middle = from + (to - from) / 2;
-      const bool before = (*this)[middle].loop_time_s < loop_time_s;
-      (before ? from : to) = before ? middle + 1 : middle;
-    }
-    return from;
+    return *std::ranges::partition_point(std::views::iota(std::size_t{0}, size_),
+                                         [&](std::size_t i) { return (*this)[i].loop_time_s < loop_time_s; });
   }
   // The last point up to `loop_time_s`; null: there is none.
   const HistoryPoint* last_until(double loop_time_s) const noexcept {
@@ -139,15 +136,30 @@ class SustainedError {
 
   // `difference_over_jnd`: signed, finite. The window restarts where `time_s` decreases or has a gap longer than
   // the span. Returns the mean, signed.
-  double add(double time_s, double difference_over_jnd) noexcept;
+  double add(double time_s, double difference_over_jnd);
 
  private:
-  struct Sample {
-    double time_s = 0.0, difference = 0.0;
-  };
-  std::array<Sample, 1000> samples_{};  // a ring: 50 ms at 20 kHz, the fastest recording
-  std::size_t first_ = 0, count_ = 0;
+  std::deque<std::pair<double, double>> samples_;  // time, s, and difference
   double sum_ = 0.0;
+};
+
+// The perceivable errors of all slots, and the largest ones of each press. A press ends with 0.2 s in the air, not with
+// a loss of contact by noise.
+class NoticedErrors {
+ public:
+  // Call it for every tick in order. Sets sustained_over_jnd and press_over_jnd where there is a comparison.
+  void add(HistoryPoint& point, const JndLine& jnd);
+  // The newest one, signed; ticks without a comparison count as 0.
+  double sustained_over_jnd(std::size_t slot) const noexcept { return slots_[slot].sustained_over_jnd; }
+  void forget(std::size_t slot) { slots_[slot] = {}; }
+
+ private:
+  struct Slot {
+    SustainedError error;
+    double sustained_over_jnd = 0.0, press_over_jnd = 0.0;
+  };
+  std::array<Slot, kMaxModels> slots_;
+  double last_contact_s_ = -std::numeric_limits<double>::infinity();  // device time
 };
 
 // The depth and the error colour of the dent that is drawn for one model. While the model pushes the tool, its surface
@@ -251,22 +263,19 @@ class Comparison {
  private:
   struct Slot {
     Dent dent;
-    SustainedError sustained;
-    double sustained_over_jnd = 0.0;  // in the last snapshot; ticks without a reference count as 0
-    double press_over_jnd = 0.0;      // its largest magnitude in this press
     StreamErrors errors;
   };
   HistoryPoint point_of(const LoopSnapshot& snapshot, const PublishedSet* set);
-  void count(HistoryPoint& point, const LoopSnapshot& snapshot, const PublishedSet& set, double step_s);
+  void count(const HistoryPoint& point, const LoopSnapshot& snapshot, const PublishedSet& set, double step_s);
 
   const SessionModels& models_;
   JndLine jnd_;
   ReferenceKind reference_;
   std::vector<Slot> slots_{kMaxModels};
+  NoticedErrors noticed_;
   double counted_s_ = 0.0;
-  double last_contact_s_ = -std::numeric_limits<double>::infinity();  // device time
-  bool settled_ = false;                                              // the feature filters have settled
-  double stream_began_s_ = 0.0;                                       // device time
+  bool settled_ = false;         // the feature filters have settled
+  double stream_began_s_ = 0.0;  // device time
   double begins_at_s_ = -std::numeric_limits<double>::infinity();
   double last_loop_time_s_ = 0.0;
   double last_time_s_ = 0.0;                           // device time

@@ -13,7 +13,6 @@
 namespace palpate {
 namespace {
 
-constexpr double kLongest_s = 60.0;         // of a trace
 constexpr double kColumnOfTicks_s = 0.025;  // a longer gap between two ticks is a stall
 
 void replace(std::string& text, std::string_view sign, const std::string& by) {
@@ -22,17 +21,11 @@ void replace(std::string& text, std::string_view sign, const std::string& by) {
 
 }  // namespace
 
-void ExhibitTrace::clear() {
-  *this = {};
-  columns_.reserve(static_cast<std::size_t>(kLongest_s / kColumn_s));
-}
-
 void ExhibitTrace::add(const ExhibitTick& tick, std::size_t level) {
   if (began_s_ < 0.0 && !tick.in_contact) return;
   if (began_s_ < 0.0) began_s_ = tick.loop_time_s;
   seconds_ = tick.loop_time_s - began_s_;
   const auto at = static_cast<std::size_t>(seconds_ / kColumn_s);
-  if (seconds_ >= kLongest_s) return;
   if (columns_.size() <= at) columns_.resize(at + 1);
   const double over_jnd = tick.over_jnd[level];
   if (tick.out_of_domain || !std::isfinite(tick.true_N + tick.model_N[level] + over_jnd)) return;
@@ -75,13 +68,14 @@ bool ExhibitGame::begin(const std::vector<ExhibitModel>& ready, bool has_referen
 void ExhibitGame::reset() {
   state_ = State::attract;
   rounds_.clear();
-  trace_.clear();
+  trace_ = {};
 }
 
 void ExhibitGame::begin_round() {
-  trace_.clear();
+  trace_ = {};
   chosen_left_ = true;
   pressed_s_ = {};
+  lifted_ = false;
   state_ = State::press;
 }
 
@@ -98,7 +92,8 @@ void ExhibitGame::answer(bool left) {
 
 void ExhibitGame::add(const ExhibitTick& tick) {
   const double step_s = std::clamp(tick.loop_time_s - std::exchange(last_s_, tick.loop_time_s), 0.0, kColumnOfTicks_s);
-  if (state_ != State::press) return;
+  lifted_ = lifted_ || !tick.in_contact;
+  if (state_ != State::press || !lifted_) return;
   trace_.add(tick, level_);
   if (!tick.in_contact) return;
   for (const bool left : {true, false})

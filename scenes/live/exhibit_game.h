@@ -7,7 +7,7 @@
 // At the end all models are judged by the same presses, those of the whole game: by the largest magnitude of the mean
 // over 50 ms of difference / JND (HistoryPoint) within the models' training domain.
 // The same seed and the same models give the same rounds.
-// Thread guarantee: one thread, slow side; `add` allocates nothing after the first minute.
+// Thread guarantee: one thread, slow side.
 #pragma once
 
 #include <array>
@@ -35,7 +35,7 @@ struct ExhibitTick {
   std::array<double, kExhibitLevels> model_N{}, over_jnd{};
 };
 
-// Both forces of one level in the first minute from the first contact on, averaged over intervals of 25 ms (columns).
+// Both forces of one level from the first contact on, averaged over intervals of 25 ms (columns).
 class ExhibitTrace {
  public:
   static constexpr double kColumn_s = 0.025;
@@ -45,7 +45,6 @@ class ExhibitTrace {
     int ticks = 0;                                               // within the training domain
   };
 
-  void clear();
   void add(const ExhibitTick& tick, std::size_t level);
   double seconds() const noexcept { return seconds_; }  // since the first contact
   const std::vector<Column>& columns() const noexcept { return columns_; }
@@ -108,6 +107,8 @@ class ExhibitGame {
   void choose(bool left) noexcept { chosen_left_ = left; }
   bool chosen_left() const noexcept { return chosen_left_; }
   const ExhibitModel& rendered() const noexcept;  // the model to render
+  // Whether the tool was out of contact in this round; what it does before is not the visitor's.
+  bool lifted() const noexcept { return lifted_; }
   bool can_answer() const noexcept {
     return state_ == State::press && pressed_s_[0] > kLeastPress_s && pressed_s_[1] > kLeastPress_s;
   }
@@ -129,6 +130,7 @@ class ExhibitGame {
   ExhibitTrace trace_;
   std::array<double, kExhibitLevels> largest_{};
   bool chosen_left_ = true;
+  bool lifted_ = false;
   std::array<double, 2> pressed_s_{};  // contact with the left and the right block in this round
   double last_s_ = 0.0;                // loop time of the last tick
 };

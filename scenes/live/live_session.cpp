@@ -297,9 +297,10 @@ ModelFigures LiveSession::figures(std::size_t slot) const {
 
 std::optional<LiveSession::Worst> LiveSession::worst(std::size_t slot, bool of_test, double zero_s) const {
   if (slot >= models_.size() || models_.info(slot).state != SlotState::ready) return std::nullopt;
+  Worst worst;
   if (const Recording* recording = of_test ? test_.recording() : nullptr)
-    return worst_of_test(slot, *recording, zero_s);
-  const ForceHistory& history = comparison_.history();
+    worst.history = worst_of_test(slot, *recording, zero_s);
+  const ForceHistory& history = worst.history ? *worst.history : comparison_.history();
   float largest = 0.0F;
   std::size_t at = history.size();
   for (std::size_t i = 0; i < history.size(); ++i) {
@@ -309,70 +310,53 @@ std::optional<LiveSession::Worst> LiveSession::worst(std::size_t slot, bool of_t
     at = i;
   }
   if (at == history.size()) return std::nullopt;
-  const auto motion = motion_at(at, history.size(), [&](std::size_t i) {
+  worst.at_s = history[at].loop_time_s;
+  worst.words = motion_words(motion_at(at, history.size(), [&](std::size_t i) {
     return std::pair(history[i].loop_time_s, static_cast<double>(history[i].position_m));
-  });
-  return Worst{false, motion_words(motion), history[at].loop_time_s, nullptr};
+  }));
+  return worst;
 }
 
-// Replays the test twice: to find the moment, and to keep the ticks around it.
-std::optional<LiveSession::Worst> LiveSession::worst_of_test(std::size_t slot, const Recording& as_recorded,
-                                                             double zero_s) const {
-  constexpr double kBefore_s = 6.0, kAfter_s = 2.0;
+// Replays the test twice: to find the moment of the largest error, and to keep the ticks around it.
+std::shared_ptr<const ForceHistory> LiveSession::worst_of_test(std::size_t slot, const Recording& as_recorded,
+                                                               double zero_s) const {
+  constexpr double kBefore_s = 30.0, kAfter_s = 2.0;  // a hold of half a minute, in about 10 MB
   const std::vector<std::size_t> slots = models_.ready_slots();
   const Recording recording = with_force_zero(as_recorded, test_.force_zero_N());
-  const double begin_s = recording.rows.front().time_s;
-  // Calls `use` with every tick and its row.
   const auto each_tick = [&](const auto& use) {
-    std::vector<SustainedError> errors(slots.size());
-    std::array<float, kMaxModels> press{};
-    double contact_s = -std::numeric_limits<double>::infinity();
-    std::size_t index = 0;
+    NoticedErrors noticed;
     (void)palpate::replay(
         recording, models_.ready_models(),
         [&](const RecordingRow& row, const TickSnapshot& tick, const auto&) {
           HistoryPoint point;
-          point.loop_time_s = zero_s + row.time_s - begin_s;
+          point.loop_time_s = zero_s + row.time_s - recording.rows.front().time_s;
           point.time_s = row.time_s;
           point.position_m = static_cast<float>(tick.position_m);
           point.depth_m = static_cast<float>(tick.depth_m);
           point.reference_N = static_cast<float>(row.force_N);
-          point.in_contact = tick.in_contact;
+          point.counts = point.in_contact = tick.in_contact;
           point.active = static_cast<std::uint8_t>(slot);
-          if (tick.in_contact && row.time_s - contact_s > 0.2) press = {};
-          if (tick.in_contact) contact_s = row.time_s;
-          for (std::size_t i = 0; i < slots.size(); ++i) {
-            const std::size_t its = slots[i];
-            point.force_N[its] = static_cast<float>(tick.force_N[i]);
-            const double difference = point.difference_over_jnd(its, scene_.jnd);
-            point.sustained_over_jnd[its] = static_cast<float>(errors[i].add(row.time_s, difference));
-            if (tick.in_contact) press[its] = std::max(press[its], std::abs(point.sustained_over_jnd[its]));
-            point.press_over_jnd[its] = press[its];
-          }
-          use(point, index++);
+          for (std::size_t i = 0; i < slots.size(); ++i) point.force_N[slots[i]] = static_cast<float>(tick.force_N[i]);
+          noticed.add(point, scene_.jnd);
+          use(point);
         },
         test_.offset_m());
   };
   float largest = 0.0F;
-  std::size_t at = recording.rows.size();
-  each_tick([&](const HistoryPoint& point, std::size_t index) {
+  double worst_s = std::numeric_limits<double>::quiet_NaN();
+  each_tick([&](const HistoryPoint& point) {
     const float error = std::abs(point.sustained_over_jnd[slot]);
-    if (!point.in_contact || !(error > largest)) return;
+    if (!point.counts || !(error > largest)) return;
     largest = error;
-    at = index;
+    worst_s = point.time_s;
   });
-  if (at == recording.rows.size()) return std::nullopt;
-  const double worst_s = recording.rows[at].time_s;
   const auto is_near = [&](double time_s) { return time_s >= worst_s - kBefore_s && time_s <= worst_s + kAfter_s; };
   auto history = std::make_shared<ForceHistory>(
       static_cast<std::size_t>(std::ranges::count_if(recording.rows, is_near, &RecordingRow::time_s)));
-  each_tick([&](const HistoryPoint& point, std::size_t) {
+  each_tick([&](const HistoryPoint& point) {
     if (is_near(point.time_s)) history->append(point);
   });
-  const auto motion = motion_at(at, recording.rows.size(), [&](std::size_t i) {
-    return std::pair(recording.rows[i].time_s, recording.rows[i].position_m - test_.offset_m());
-  });
-  return Worst{true, motion_words(motion), zero_s + worst_s - begin_s, std::move(history)};
+  return history;
 }
 
 void LiveSession::update_verdict() {
@@ -383,14 +367,14 @@ void LiveSession::update_verdict() {
   note(start_.all_models_s, !ready.empty() && models_.all_settled());
   const bool live = !test_.has_recording();
   // A sentence about a model that is gone, or whose figures are not known yet, waits.
-  const bool known = !verdict_.chosen ||
-                     (std::ranges::count(ready, *verdict_.chosen) > 0 && !models_.info(*verdict_.chosen).refitting &&
-                      (live || figures(*verdict_.chosen).errors.samples > 0));
+  const bool refits = std::ranges::any_of(ready, [&](std::size_t slot) { return models_.info(slot).refitting; });
+  const bool known = !refits && (!verdict_.chosen || (std::ranges::count(ready, *verdict_.chosen) > 0 &&
+                                                      (live || figures(*verdict_.chosen).errors.samples > 0)));
   if (!known) {
     verdict_ = {};
     judged_ = 0;
   }
-  if (!test_.complete() || (live && comparison_.counted_s() < kLeastContact_s)) return;
+  if (refits || !test_.complete() || (live && comparison_.counted_s() < kLeastContact_s)) return;
   // The errors of the ticks change with each tick; the sentence does not flicker.
   if (live ? now_s < judged_s_ + kJudged_s : judged_ == test_.results()) return;
   judged_s_ = now_s;

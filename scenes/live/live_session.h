@@ -87,7 +87,6 @@ class LiveSession {
   // `of_test` false, or without a test, in the ticks of this session. `zero_s`: the loop time of the first tick of the
   // test. Takes some tenths of a second. Empty: the model is not ready, or nothing was compared yet.
   struct Worst {
-    bool of_test = false;
     std::string words;                            // motion_words
     double at_s = 0.0;                            // loop time
     std::shared_ptr<const ForceHistory> history;  // of the test; null: that of the session
@@ -155,7 +154,7 @@ class LiveSession {
   void read_snapshots();
   void save_fault_ticks();
   void update_verdict();
-  std::optional<Worst> worst_of_test(std::size_t slot, const Recording& recording, double zero_s) const;
+  std::shared_ptr<const ForceHistory> worst_of_test(std::size_t slot, const Recording& recording, double zero_s) const;
 
   SessionRequest request_;
   Scene scene_;

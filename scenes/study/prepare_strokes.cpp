@@ -148,7 +148,7 @@ Result<std::shared_ptr<const StrokePair>> prepare_strokes(const std::string& sce
   if (!plans) return plans.error();
   const Result<Recording> rendered = test_recording(*loaded, recording);
   if (!rendered) return rendered.error();
-  ModelWorker worker(*loaded, kTrainingSeed);
+  ModelWorker worker(*loaded, kTrainingSeed, {}, ready_models_folder());
   std::vector<Model> made;
   for (const ModelRequest& plan : *plans) {
     auto model = worker.make(plan);

@@ -61,7 +61,7 @@ TEST_F(DemoCommandsTest, AButtonDoesWhatItsKeyDoes) {
   move_mouse(static_cast<double>(buttons->Pos.x + padding.x + 8.0F),
              static_cast<double>(buttons->Pos.y + padding.y + 6.0F), 3);
   click();
-  EXPECT_TRUE(app_->view().dialogs.file_list);
+  EXPECT_EQ(app_->view().dialogs.open, Dialog::files);
 }
 
 TEST_F(DemoCommandsTest, ARecordingGoesOnByOneSample) {
@@ -110,7 +110,7 @@ TEST_F(DemoCommandsTest, OpenTakesTheFocusAndATypedPathReplacesTheOldOne) {
   press(GLFW_KEY_ENTER);
   EXPECT_TRUE(told("there is no file " + folder_.file("nowhere.json")));
   EXPECT_TRUE(app_->view().settings.recent.empty());
-  EXPECT_FALSE(app_->view().dialogs.file_list);
+  EXPECT_EQ(app_->view().dialogs.open, Dialog::none);
   open_list(GLFW_KEY_O);
   type(folder_.file("third.json"));
   EXPECT_EQ(app_->view().dialogs.picker.path.data(), folder_.file("third.json"));
@@ -130,17 +130,16 @@ TEST_F(DemoCommandsTest, AFileIsChosenWithKeysAlone) {
   press(GLFW_KEY_DOWN);  // lab/
   press(GLFW_KEY_ENTER);
   std::filesystem::current_path(before);
-  ASSERT_TRUE(app_->view().dialogs.file_list);
+  ASSERT_EQ(app_->view().dialogs.open, Dialog::files);
   EXPECT_EQ(app_->view().dialogs.picker.files, std::vector<std::string>{"third.json"});
   frames(4);
   press(GLFW_KEY_DOWN);
   press(GLFW_KEY_DOWN);  // third.json
   press(GLFW_KEY_ENTER);
   EXPECT_EQ(app_->session().models().size(), 3u);
-  EXPECT_FALSE(app_->view().dialogs.file_list);
+  EXPECT_EQ(app_->view().dialogs.open, Dialog::none);
 }
 
-// The letter of a button is its key.
 TEST_F(DemoCommandsTest, EveryButtonHasItsFirstLetterAsKey) {
   open("hand");
   for (const WindowCommand& command : app_->commands())
@@ -152,7 +151,7 @@ TEST_F(DemoCommandsTest, TabReachesEveryButton) {
   press(GLFW_KEY_TAB);
   press(GLFW_KEY_TAB);
   press(GLFW_KEY_ENTER);
-  EXPECT_TRUE(app_->view().dialogs.scene_list) << "the second button";
+  EXPECT_EQ(app_->view().dialogs.open, Dialog::scenes) << "the second button";
   press(GLFW_KEY_ESCAPE);
   EXPECT_EQ(app_->view().focus, -1);
   press(GLFW_KEY_SPACE);
@@ -194,14 +193,14 @@ TEST_F(DemoCommandsTest, ListsAreUsedWithKeysAlone) {
   press(GLFW_KEY_UP);
   EXPECT_EQ(ImGui::GetFocusID(), own);
   press(GLFW_KEY_ENTER);
-  EXPECT_FALSE(app_->view().dialogs.scene_list);
+  EXPECT_EQ(app_->view().dialogs.open, Dialog::none);
   EXPECT_TRUE(app_->session().scene().has_material());
 
   open_list(GLFW_KEY_D);
   ASSERT_TRUE(until([&] { return !app_->view().devices.empty(); }));
   frames(4);
   for (int i = 0; i < 9; ++i) press(GLFW_KEY_UP);
-  for (int i = 0; i < 9 && app_->view().dialogs.device_list; ++i) {
+  for (int i = 0; i < 9 && app_->view().dialogs.any(); ++i) {
     if (ImGui::FindWindowByName("Device")->GetID("hand") == ImGui::GetFocusID()) {
       press(GLFW_KEY_ENTER);
     } else {
@@ -223,10 +222,11 @@ TEST_F(DemoCommandsTest, KeysDoWhatTheHelpSays) {
   EXPECT_FALSE(app_->view().time.paused);
   press(GLFW_KEY_H);
   press(GLFW_KEY_L);
-  press(GLFW_KEY_O);
-  EXPECT_TRUE(app_->view().dialogs.help && app_->view().details && app_->view().dialogs.file_list);
+  EXPECT_TRUE(app_->view().dialogs.open == Dialog::help && app_->view().details);
+  press(GLFW_KEY_V);
+  EXPECT_EQ(app_->view().dialogs.open, Dialog::view) << "one at a time";
   press(GLFW_KEY_ESCAPE);
-  EXPECT_FALSE(app_->view().dialogs.help || app_->view().details || app_->view().dialogs.file_list);
+  EXPECT_FALSE(app_->view().dialogs.any() || app_->view().details);
   EXPECT_FALSE(app_->closing());
   press(GLFW_KEY_Q, GLFW_MOD_CONTROL);
   EXPECT_TRUE(app_->closing());
@@ -234,18 +234,19 @@ TEST_F(DemoCommandsTest, KeysDoWhatTheHelpSays) {
 
 TEST_F(DemoCommandsTest, TheKeysAreListedInsideTheSmallestWindow) {
   open("hand");
-  press(GLFW_KEY_H);
-  press(GLFW_KEY_O);
-  for (const auto& [width, height] : {std::pair{900, 600}, std::pair{800, 480}, std::pair{800, 1050}}) {
-    glfwSetWindowSize(app_->window().handle(), width, height);
-    frames(8);
-    for (const char* name : {"Help", "Open a file", "over buttons", "over title"}) {
-      const ImGuiWindow* window = ImGui::FindWindowByName(name);
-      ASSERT_NE(window, nullptr) << name;
-      EXPECT_GE(window->Pos.x, 0.0F) << name << " " << width;
-      EXPECT_GE(window->Pos.y, 0.0F) << name << " " << width;
-      EXPECT_LE(window->Pos.x + window->Size.x, static_cast<float>(width)) << name;
-      EXPECT_LE(window->Pos.y + window->Size.y, static_cast<float>(height)) << name;
+  for (const auto& [key, dialog] : {std::pair{GLFW_KEY_H, "Help"}, {GLFW_KEY_O, "Open a file"}}) {
+    press(key);
+    for (const auto& [width, height] : {std::pair{900, 600}, std::pair{800, 480}, std::pair{800, 1050}}) {
+      glfwSetWindowSize(app_->window().handle(), width, height);
+      frames(8);
+      for (const char* name : {dialog, "over buttons", "over title"}) {
+        const ImGuiWindow* window = ImGui::FindWindowByName(name);
+        ASSERT_NE(window, nullptr) << name;
+        EXPECT_GE(window->Pos.x, 0.0F) << name << " " << width;
+        EXPECT_GE(window->Pos.y, 0.0F) << name << " " << width;
+        EXPECT_LE(window->Pos.x + window->Size.x, static_cast<float>(width)) << name;
+        EXPECT_LE(window->Pos.y + window->Size.y, static_cast<float>(height)) << name;
+      }
     }
   }
 }

@@ -169,6 +169,9 @@ TEST_F(DemoInputTest, ADragOnTheCurvesMovesBlocksAndNumbers) {
   EXPECT_LT(app_->shown().models.now.loop_time_s, at_s) << "to the left is earlier";
   left_button(GLFW_RELEASE, 4);
   EXPECT_FALSE(app_->shown().models.stands) << "back to now";
+  point_at(1180.0, 100.0);
+  left_button(GLFW_PRESS, 4);
+  EXPECT_TRUE(app_->shown().models.stands && app_->shown().models.now.in_contact) << "against depth: the nearest one";
 }
 
 }  // namespace

@@ -176,6 +176,7 @@ TEST_F(ExhibitTest, IsPlayedWithAMouseAlone) {
 TEST_F(ExhibitTest, OneStrokeIsOnePress) {
   open_exhibit({{1.0, 300.0, 2.0, 0.5}});
   press(GLFW_KEY_1);
+  ASSERT_TRUE(until([&] { return game().lifted(); })) << "the simulated hand is gone";
   move(block(0, -60.0F));
   move(block(0, 120.0F), 30);
   EXPECT_TRUE(app_->session().newest().tick.in_contact);

@@ -21,7 +21,7 @@ ModelView ready_slot(const char* name) {
 ModelsView view_of(std::vector<ModelView> slots, bool in_contact) {
   ModelsView models;
   models.slots = std::move(slots);
-  models.in_contact = in_contact;
+  models.now.in_contact = in_contact;
   return models;
 }
 
@@ -78,7 +78,7 @@ TEST(PanelWords, WarnsOutOfDomainOnlyInContactAndOfTheActiveModel) {
   ModelsView models = view_of({ready_slot("greedy-100"), ready_slot("direct")}, false);
   models.slots[0].out_of_domain = true;
   EXPECT_EQ(data_warning(models), "");
-  models.in_contact = true;
+  models.now.in_contact = true;
   EXPECT_NE(data_warning(models).find("greedy-100"), std::string::npos);
   models.replays_training = true;
   EXPECT_EQ(data_warning(models), "") << "it was trained on this recording";
@@ -150,7 +150,7 @@ TEST(PanelWords, WithoutATruthTheBigNumberIsThePrediction) {
   greedy.predicted_error_N = 0.5 * JndLine{}.at(1.0);
   EXPECT_EQ(big_number(models).number, "0.50");
   EXPECT_EQ(big_number(models).below, "no truth to compare with");
-  models.in_contact = false;
+  models.now.in_contact = false;
   EXPECT_EQ(big_number(models).number, "–");
   EXPECT_EQ(big_number({}).number, "");
 }
