@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "engine/base/files.h"
+#include "engine/base/parallel.h"
 #include "engine/base/statistics.h"
 #include "engine/base/text.h"
 
@@ -63,8 +64,7 @@ EndForce end_force(const std::array<Slice, kSlices>& slices, bool low) {
 
 }  // namespace
 
-std::uint64_t content_hash(const Recording& recording) {
-  std::uint64_t hash = 0xCBF29CE484222325ULL;
+std::uint64_t content_hash(const Recording& recording, std::uint64_t hash) {
   for (const RecordingRow& row : recording.rows) {
     for (const double value : column_values(row)) {
       hash = (hash ^ std::bit_cast<std::uint64_t>(value)) * 0x100000001B3ULL;
@@ -396,8 +396,9 @@ class RecordingReader {
   RecordingReader(std::istream& stream, std::string label)
       : stream_(stream), label_(std::move(label)), buffer_(kMaximumLineBytes + kBeyondLimit) {}
 
+  // Reads the next rows, at most `most_rows`.
   Result<Recording> read(std::size_t most_rows, std::size_t expected_rows) {
-    if (!read_header()) return *error_;
+    if (roles_.empty() && !read_header()) return *error_;
     Recording recording{printable(std::filesystem::path(label_).stem().string(), std::string::npos),
                         {has(ColumnRole::kVelocity), has(ColumnRole::kAcceleration)},
                         {}};
@@ -557,6 +558,25 @@ Result<Recording> read_recording(const std::string& path, std::size_t most_rows)
   std::error_code unknown;  // then the size is the largest number
   const auto bytes = std::filesystem::file_size(path, unknown);
   return RecordingReader(**file, path).read(most_rows, std::min<std::size_t>(bytes / kShortestRow, kMostExpected));
+}
+
+Status read_recording_blocks(const std::string& path, std::size_t block_rows,
+                             const std::function<void(Recording block)>& use) {
+  const auto file = open_plain_file(path, "a recording (CSV)");
+  if (!file) return file.error();
+  RecordingReader reader(**file, path);
+  Result<Recording> block = reader.read(block_rows, block_rows);
+  while (block && !block->rows.empty()) {
+    Result<Recording> next = Recording{};
+    parallel_for(2, [&](int part) {
+      if (part == 0)
+        next = reader.read(block_rows, block_rows);
+      else
+        use(std::move(*block));
+    });
+    block = std::move(next);
+  }
+  return block ? Status() : block.error();
 }
 
 }  // namespace palpate

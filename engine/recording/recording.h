@@ -12,6 +12,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <istream>
 #include <limits>
 #include <optional>
@@ -44,8 +45,10 @@ struct Recording {
   std::vector<RecordingRow> rows;
 };
 
-// A hash of the numbers of a recording, independent of its name: FNV-1a with an additional shift.
-std::uint64_t content_hash(const Recording& recording);
+// A hash of the numbers of a recording, independent of its name: FNV-1a with an additional shift. `before`: that of the
+// rows before these.
+inline constexpr std::uint64_t kHashOfNoRows = 0xCBF29CE484222325ULL;
+std::uint64_t content_hash(const Recording& recording, std::uint64_t before = kHashOfNoRows);
 
 inline constexpr std::size_t kRecordingMinimumRows = 10;
 inline constexpr std::size_t kAllRows = std::numeric_limits<std::size_t>::max();
@@ -55,6 +58,10 @@ inline constexpr std::size_t kAllRows = std::numeric_limits<std::size_t>::max();
 Result<Recording> read_recording(const std::string& path, std::size_t most_rows = kAllRows);
 // The same for any stream; `label` replaces the path.
 Result<Recording> read_recording(std::istream& stream, const std::string& label, std::size_t most_rows = kAllRows);
+// Reads a recording of any length in blocks of at most `block_rows` rows. `use`: called with one after the other while
+// the next is read on another thread. Errors: as read_recording, after the blocks before the fault.
+Status read_recording_blocks(const std::string& path, std::size_t block_rows,
+                             const std::function<void(Recording block)>& use);
 
 // Writes `recording` to `path` atomically (AtomicFile). Numbers read back as the same doubles. `comments` become '#'
 // lines, one for each line of text. Errors: those of AtomicFile; a row or recording that breaks the rules above. Then

@@ -196,10 +196,16 @@ class Checker {
   }
 
   void check_sampling() {
-    const double rate_Hz = 1.0 / measures_.median_step_s;
+    const double rate_Hz = static_cast<double>(prepared_.stride) / measures_.median_step_s;
     add("rate", Severity::note, rate_Hz,
         words("the recording has %.4g rows per second and lasts %.3g s", rate_Hz, measures_.duration_s),
         rate_Hz < kSlowRate_Hz ? "this rate suits only slow motion: record presses by hand at 500 Hz or more" : "");
+    if (prepared_.stride > 1) {
+      const auto every = static_cast<double>(prepared_.stride);
+      add("thinned", Severity::note, every,
+          words("one of %.0f of its %zu rows is used, with the motion from all", every, prepared_.recorded_rows),
+          "as a test, split it to replay all of it");
+    }
     if (measures_.largest_step_s <= std::max(kGap_s, kGapSteps * measures_.median_step_s)) return;
     add("gap", Severity::warning, measures_.largest_step_s,
         words("nothing was recorded for %.3g s from %.4g s on", measures_.largest_step_s, measures_.largest_step_at_s),

@@ -195,11 +195,9 @@ RecordingFaults remove_faults(Recording& recording) {
   return faults;
 }
 
-Result<Recording> read_usable_recording(const std::string& path, std::size_t most_rows, RecordingFaults* faults) {
-  auto recording = read_recording(path, most_rows);
-  if (!recording) return recording;
-  const RecordingFaults found = remove_faults(*recording);
-  if (faults != nullptr) *faults = found;
+Result<Recording> read_usable_recording(const std::string& path) {
+  auto recording = read_recording(path);
+  if (recording) remove_faults(*recording);
   return recording;
 }
 

@@ -90,14 +90,19 @@ struct SurfaceEstimate {
 // does not identify the onset. A longer recording at 1 kHz contributes its first seven minutes.
 inline constexpr std::size_t kOnsetRows = 400000;
 inline constexpr double kCoarsestOnset_s = 1.5e-3;
+// The maximum number of rows of a recording that are kept, 100 minutes at 1 kHz and some 350 MB; of a longer one every
+// second, fourth, ...
+inline constexpr std::size_t kMostKeptRows = 6000000;
 
 // A recording with the estimates from it alone.
 struct PreparedRecording {
-  Recording recording;
-  std::uint64_t content_hash = 0;  // engine/recording/recording.h
+  Recording recording;                 // every `stride`-th row
+  std::vector<MotionEstimate> motion;  // at these rows, estimated from all
+  std::size_t recorded_rows = 0, stride = 1;
+  std::uint64_t content_hash = kHashOfNoRows;  // of all rows (engine/recording/recording.h)
   SensorSpec sensor;
   double force_noise_N = 0.0;  // standard deviation
-  std::vector<Sample> rows;    // with their motion; at most kOnsetRows
+  std::vector<Sample> rows;    // of the beginning, with their motion; at most kOnsetRows
   SurfaceEstimate surface;
 };
 
@@ -123,18 +128,20 @@ inline constexpr std::size_t kRowsPerQuestion = 65536;
 // Surfaces that differ by less count as equal.
 inline constexpr double kLeastSurface_m = 0.5 * kWidestSurface_m;
 
-struct Samples {
-  // Columns, one value a row; the longest recording first.
+struct SampleColumns {
+  // One value a row; the longest recording first.
   std::vector<Sample> rows;    // positions from the surface of the table, forces without the force zero
   std::vector<int> recording;  // index of `offsets`
   std::vector<int> stroke;     // number of the contact, counted over all recordings; 0 before the first
   std::vector<int> fold;
-  int folds = 1;
   // Repetitions, of which one is left out as a whole where the error of a new recording is estimated: the recordings,
   // or the presses of a single one, each from the lowest position before a rise by half of the range.
   std::vector<int> unit;
-  int units = 1;
+  std::vector<std::size_t> contact;  // the rows in contact, ascending
+};
 
+struct SampleTable {
+  int folds = 1, units = 1;
   std::vector<RecordingOffset> offsets;  // one for each recording
   double surface_m = 0.0;                // of the table, in positions as recorded
   std::size_t recorded_rows = 0;         // of all recordings; more than kMaximumRows are thinned evenly
@@ -142,17 +149,18 @@ struct Samples {
   double force_noise_N = 0.0;            // the largest of all recordings
 
   // Ranges in contact.
-  std::vector<std::size_t> contact;  // the rows in contact, ascending
-  double depth_m = 0.0;              // greatest
-  double force_N = 0.0;              // largest
-  double always_N = 0.0;             // only one row in a thousand of all has a smaller force
-  double lowest_force_N = 0.0;       // below 0 if the material is known to pull (adhesion), else 0
-  bool surface_outside = false;      // of all positions, each of which has a force: there is no free air
+  double depth_m = 0.0;          // greatest
+  double force_N = 0.0;          // largest
+  double always_N = 0.0;         // only one row in a thousand of all has a smaller force
+  double lowest_force_N = 0.0;   // below 0 if the material is known to pull (adhesion), else 0
+  bool surface_outside = false;  // of all positions, each of which has a force: there is no free air
   double rms_velocity_m_per_s = 0.0;
   std::size_t strokes = 0;
   double sample_s = 0.0;  // mean sampling period
   double longest_recording_s = 0.0;
+};
 
+struct Samples : SampleTable, SampleColumns {
   bool begins_recording(std::size_t row) const { return row == 0 || recording[row] != recording[row - 1]; }
   // At or below this magnitude a sample has no measured force, which shows only that the force is not positive. Minus
   // infinity where the material pulls: a force of 0 then counts like any other.
@@ -165,10 +173,12 @@ Result<Samples> make_samples(std::vector<PreparedRecordingPointer> recordings, c
 // The rows that are at least `least_step_s` after the last one of their recording, with the same ranges. The filters of
 // the features are exact for steps of any length.
 Samples thinned(const Samples& samples, double least_step_s);
-// The features at these rows (ascending): one column a row, SI. FeaturePlan advances through all samples, eight
-// features at a time. Errors: interrupted.
+// The features at these rows (ascending), and the memory of features there, as in RecordingEnds: one column a row, SI.
+// Filters of two to eight features advance through all samples, each on a thread. Errors: interrupted.
 Result<Eigen::MatrixXd> features_at(const Samples& samples, const std::vector<FeatureSpec>& features,
                                     const std::vector<std::size_t>& rows, const FitControl& control = {});
+Result<Eigen::MatrixXd> memory_at(const Samples& samples, const std::vector<FeatureSpec>& features,
+                                  const std::vector<std::size_t>& rows, const FitControl& control = {});
 // Of each recording, in the order of `offsets`, for these features, at most kMaxFeatures.
 std::vector<RecordingEnds> recording_ends(const Samples& samples, const std::vector<FeatureSpec>& features);
 
@@ -195,13 +205,24 @@ struct RecordingFaults {
   std::size_t updates = 0;     // number of rows with an update that were kept
 
   bool any() const { return position_dropouts + force_dropouts > 0 || update_step_s > 0.0; }
+  // Adds those of the next rows of the recording.
+  void add(const RecordingFaults& next) {
+    rows += next.rows;
+    position_dropouts += next.position_dropouts;
+    force_dropouts += next.force_dropouts;
+    updates += next.updates;
+    if (update_step_s > 0.0) return;
+    update_step_s = next.update_step_s;
+    held_force = next.held_force;
+  }
 };
 
 // Removes the rows from `recording`.
 RecordingFaults remove_faults(Recording& recording);
-// Reads a recording and removes such rows. `faults`: receives what was removed; may be null. Errors: those of
-// read_recording.
-Result<Recording> read_usable_recording(const std::string& path, std::size_t most_rows = kAllRows,
-                                        RecordingFaults* faults = nullptr);
+// Reads a recording and removes such rows. Errors: those of read_recording.
+Result<Recording> read_usable_recording(const std::string& path);
+// The same for a training, in blocks of some minutes, of which each is searched for faults by itself, so that memory
+// does not grow with the length. `faults`: receives what was removed.
+Result<PreparedRecordingPointer> read_prepared_recording(const std::string& path, RecordingFaults& faults);
 
 }  // namespace palpate

@@ -45,19 +45,33 @@ std::vector<ElasticSpline> elastic_basis(const Samples& samples) {
   return basis;
 }
 
-// One feature for each basis function of a part.
-void add_columns(std::vector<FeatureSpec>& columns, const FeatureSpec& candidate, std::size_t part,
-                 double reference_depth_m) {
-  for (std::size_t k = 0; k < kCurveTerms; ++k) {
-    std::array<double, kCurveTerms> one{};
-    one[k] = 1.0;
-    FeatureSpec& column = columns.emplace_back(FeatureSpec{candidate.kind});
-    column.slowing = candidate.slowing;
-    column.part_count = 1;
-    column.parts[0] = candidate.parts[part];
-    column.parts[0].drive = combined_curve(candidate.kind, one.data(), reference_depth_m);
-    if (candidate.kind == FeatureKind::creep) column.parts[0].threshold_m = reference_depth_m;
-  }
+// The drive curve that is one of the basis functions.
+DriveCurve basis_curve(FeatureKind kind, std::size_t k, double reference_depth_m) {
+  std::array<double, kCurveTerms> one{};
+  one[k] = 1.0;
+  return combined_curve(kind, one.data(), reference_depth_m);
+}
+
+// The parts of a list, in its order, as features of up to kMaxFeatureParts: the branches for each basis function as
+// their drive curve, then the bristles, whose deflection does not depend on it.
+std::vector<FeatureSpec> memory_features(const FeatureList& list, double reference_depth_m) {
+  std::vector<FeatureSpec> features;
+  const auto add = [&](const FeatureSpec& candidate, std::size_t basis) {
+    for (std::size_t p = 0; p < candidate.part_count; ++p) {
+      const bool joins = !features.empty() && features.back().kind == candidate.kind &&
+                         features.back().slowing == candidate.slowing && features.back().part_count < kMaxFeatureParts;
+      if (!joins) features.emplace_back(FeatureSpec{candidate.kind}).slowing = candidate.slowing;
+      FeaturePart& part = features.back().parts[features.back().part_count++] = candidate.parts[p];
+      part.drive = basis_curve(candidate.kind, basis, reference_depth_m);
+      if (candidate.kind == FeatureKind::creep) part.threshold_m = reference_depth_m;
+    }
+  };
+  for (std::size_t k = 0; k < kCurveTerms; ++k)
+    for (const FeatureSpec& candidate : list.features)
+      if (is_branch(candidate.kind)) add(candidate, k);
+  for (const FeatureSpec& candidate : list.features)
+    if (is_bristle(candidate.kind)) add(candidate, 0);
+  return features;
 }
 
 Trend trend_from(const TrendColumns& columns, const Eigen::VectorXd& x) {
@@ -187,19 +201,27 @@ Result<TrendColumns> TrendColumns::make(const Samples& samples, FeatureList list
   made.stride_ = (samples.contact.size() + most_rows - 1) / most_rows;
   for (std::size_t i = 0; i < samples.contact.size(); i += made.stride_) made.rows_.push_back(samples.contact[i]);
   const std::vector<ElasticSpline> elastic = elastic_basis(samples);
-  std::vector<FeatureSpec> memory;  // the columns of branches and bristles
-  Eigen::Index columns = 0;
+  constexpr auto kBasis = static_cast<Eigen::Index>(kCurveTerms);
+  Eigen::Index columns = 0, branches = 0;
   for (const FeatureSpec& spec : list.features) {
-    for (std::size_t p = 0; p < spec.part_count; ++p) add_columns(memory, spec, p, samples.depth_m);
     const std::size_t count = spec.kind == FeatureKind::depth      ? elastic.size()
                               : spec.kind == FeatureKind::velocity ? 2 * kViscosityCoefficients
                                                                    : kCurveTerms * spec.part_count;
     ColumnList& of_feature = made.feature_columns_.emplace_back(count);
     std::iota(of_feature.begin(), of_feature.end(), columns);
     columns += static_cast<Eigen::Index>(count);
+    if (is_branch(spec.kind)) branches += static_cast<Eigen::Index>(spec.part_count);
   }
-  const auto of_memory = features_at(samples, memory, made.rows_, control);
-  if (!of_memory) return of_memory.error();
+  const std::vector<FeatureSpec> features = memory_features(list, samples.depth_m);
+  const auto memory = memory_at(samples, features, made.rows_, control);
+  if (!memory) return memory.error();
+  std::vector<double> thresholds_m;  // of the bristles
+  for (const FeatureSpec& spec : features)
+    for (std::size_t p = 0; is_bristle(spec.kind) && p < spec.part_count; ++p)
+      thresholds_m.push_back(spec.parts[p].threshold_m);
+  std::vector<DriveCurve> frictions;
+  for (std::size_t k = 0; k < kCurveTerms; ++k)
+    frictions.push_back(basis_curve(FeatureKind::stops, k, samples.depth_m));
   const bool viscous = has_kind(list.features, FeatureKind::velocity);
   made.list_ = std::move(list);
   made.terms_.resize(static_cast<Eigen::Index>(made.count()), columns);
@@ -214,7 +236,14 @@ Result<TrendColumns> TrendColumns::make(const Samples& samples, FeatureList list
       for (const double v : {velocity_m_per_s, trend_equation::thinned(velocity_m_per_s, samples.rms_velocity_m_per_s)})
         for (const auto& power : kViscousBasis) *to++ = v * trend_equation::quadratic(power.data(), u);
     }
-    std::copy(of_memory->col(row).begin(), of_memory->col(row).end(), to);
+    const auto values = memory->col(row);
+    for (Eigen::Index branch = 0; branch < branches; ++branch)
+      for (Eigen::Index k = 0; k < kBasis; ++k) *to++ = values(k * branches + branch);
+    auto bend_m = values.begin() + kBasis * branches;
+    for (const double threshold_m : thresholds_m) {
+      for (const DriveCurve& friction : frictions) *to++ = friction.at(depth_m) * *bend_m * (1.0 / threshold_m);
+      ++bend_m;
+    }
   }
   return made;
 }

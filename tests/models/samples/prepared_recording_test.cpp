@@ -233,7 +233,7 @@ TEST(RecordingFaults, BlamesNoRealRecording) {
     for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
       if (entry.path().extension() != ".csv") continue;
       RecordingFaults faults;
-      ASSERT_TRUE(read_usable_recording(entry.path().string(), kAllRows, &faults).ok()) << entry.path();
+      ASSERT_TRUE(read_prepared_recording(entry.path().string(), faults).ok()) << entry.path();
       EXPECT_FALSE(faults.any()) << entry.path();
     }
   }
