@@ -5,7 +5,6 @@
 #include <bit>
 #include <charconv>
 #include <filesystem>
-#include <limits>
 #include <memory>
 #include <string_view>
 #include <tuple>
@@ -168,8 +167,6 @@ namespace {
 // The longest comment: '#', a blank and the text fit in one line.
 constexpr std::size_t kMaximumCommentBytes = kMaximumLineBytes - 2;
 
-constexpr std::uint64_t kMostNotes = 20;
-
 // Appends one '#' line for each line of `comment`, up to the longest comment. Control characters become blanks, because
 // the reader would refuse them or take them for line ends.
 void append_comment(std::string& out, std::string_view comment) {
@@ -205,7 +202,7 @@ Result<RecordingWriter> RecordingWriter::create(const std::string& path, Recordi
   std::string head;
   for (const std::string& comment : comments) append_comment(head, comment);
   file->write(head + line_of(columns, [](std::size_t i) { return kColumnNames[i]; }));
-  return RecordingWriter(std::move(*file), path, columns, overwrite);
+  return RecordingWriter(std::move(*file), path, columns);
 }
 
 Status RecordingWriter::add(const RecordingRow& row) {
@@ -214,10 +211,6 @@ Status RecordingWriter::add(const RecordingRow& row) {
   const auto values = column_values(row);
   file_.write(line_of(columns_, [&](std::size_t i) { return shortest(values[i]); }));
   return {};
-}
-
-void RecordingWriter::note(const std::string& comment) {
-  if (++noted_ <= kMostNotes) append_comment(notes_, comment);
 }
 
 Status RecordingWriter::flush() {
@@ -232,14 +225,7 @@ Status RecordingWriter::commit() {
     const AtomicFile given_up = std::move(file_);
     return Error{path_ + ": cannot write: " + fault->text};
   }
-  if (notes_.empty()) return file_.commit();
-  if (noted_ > kMostNotes) append_comment(notes_, std::to_string(noted_ - kMostNotes) + " more such notes");
-  if (const Status flushed = flush(); !flushed) return flushed;
-  const auto rows =
-      read_plain_file(AtomicFile::part_of(path_), "the recording", "", std::numeric_limits<std::size_t>::max());
-  if (!rows || !write_file_atomically(path_, notes_ + *rows, overwrite_)) return file_.commit();
-  const AtomicFile copied = std::move(file_);
-  return {};
+  return file_.commit();
 }
 
 // Reads recordings, with the messages of all faults.

@@ -163,9 +163,6 @@ class RecordingWriter {
   // Buffered. Errors: a row that breaks a rule (engine/recording/recording.h); it is not written.
   Status add(const RecordingRow& row);
 
-  // Adds a comment, which `commit` writes above the others; for a writer with a part.
-  void note(const std::string& comment);
-
   std::uint64_t rows() const { return rules_.rows(); }
   // Whether an input/output error has occurred, which `commit` will return.
   bool failed() const noexcept { return file_.failed(); }
@@ -175,21 +172,18 @@ class RecordingWriter {
   // The number of rows that `flush` has added.
   std::uint64_t flushed_rows() const noexcept { return flushed_rows_; }
 
-  // The file gets its notes when it is complete; without room on the disk for a copy it is left without them. Errors:
-  // those of AtomicFile::commit; fewer than 10 rows, or a rate outside the reader's range, which leave no file.
+  // Errors: those of AtomicFile::commit; fewer than 10 rows, or a rate outside the reader's range, which leave no file.
   Status commit();
 
  private:
-  RecordingWriter(AtomicFile file, std::string path, RecordingColumns columns, bool overwrite)
-      : file_(std::move(file)), path_(std::move(path)), columns_(columns), overwrite_(overwrite) {}
+  RecordingWriter(AtomicFile file, std::string path, RecordingColumns columns)
+      : file_(std::move(file)), path_(std::move(path)), columns_(columns) {}
 
   AtomicFile file_;
   std::string path_;
   RecordingColumns columns_;
-  bool overwrite_;
   RowRules rules_;
-  std::string notes_;  // '#' lines
-  std::uint64_t noted_ = 0, flushed_rows_ = 0;
+  std::uint64_t flushed_rows_ = 0;
 };
 
 }  // namespace palpate
