@@ -120,7 +120,6 @@ void measure(Samples& samples, const JndLine& jnd) {
   const auto count = static_cast<double>(samples.contact.size());
   const bool pulling = pulls >= std::max(10.0, 1e-3 * count);
   if (pulling && lowest_N < -certain_force_N(samples.force_noise_N)) samples.lowest_force_N = lowest_N;
-  samples.strokes = static_cast<std::size_t>(stroke);
   samples.sample_s = duration_s / std::max(1.0, steps);
   // A tool that never moved still needs a scale: 1 um/s.
   samples.rms_velocity_m_per_s = std::max(1e-6, count > 0.0 ? std::sqrt(squares / count) : 0.0);
@@ -282,30 +281,20 @@ Result<Samples> make_samples(std::vector<PreparedRecordingPointer> recordings, c
   return samples;
 }
 
-Samples thinned(const Samples& samples, double least_step_s) {
-  Samples few;
-  static_cast<SampleTable&>(few) = samples;
-  double last_s = 0.0;
-  for (std::size_t i = 0; i < samples.rows.size(); ++i) {
-    const double time_s = samples.rows[i].tool.time_s;
-    if (!samples.begins_recording(i) && time_s - last_s < least_step_s) continue;
-    last_s = time_s;
-    if (in_contact(samples.rows[i].tool, 0.0)) few.contact.push_back(few.rows.size());
-    few.rows.push_back(samples.rows[i]);
-    few.recording.push_back(samples.recording[i]);
-    few.stroke.push_back(samples.stroke[i]);
-    few.fold.push_back(samples.fold[i]);
-    few.unit.push_back(samples.unit[i]);
-  }
-  return few;
-}
-
 namespace {
+
+// Whether a row begins a recording or is at least `least_step_s` after the time `last_s`, which then becomes its own.
+bool is_apart(const Samples& samples, std::size_t row, double least_step_s, double& last_s) {
+  const double time_s = samples.rows[row].tool.time_s;
+  if (!samples.begins_recording(row) && time_s - last_s < least_step_s) return false;
+  last_s = time_s;
+  return true;
+}
 
 // The `values` of filters of these features at the rows, one column a row. `size_of`: their number for some features.
 Result<Eigen::MatrixXd> at_rows(const Samples& samples, const std::vector<FeatureSpec>& features,
-                                const std::vector<std::size_t>& rows, const FitControl& control, const auto& size_of,
-                                const auto& values) {
+                                const std::vector<std::size_t>& rows, const FitControl& control, double least_step_s,
+                                const auto& size_of, const auto& values) {
   // A filter for each of two threads, or more; a feature does not depend on the others of its filter.
   const std::size_t count = features.size();
   const std::size_t parts = std::min(count, std::max<std::size_t>(2, (count + kMaxFeatures - 1) / kMaxFeatures));
@@ -318,11 +307,13 @@ Result<Eigen::MatrixXd> at_rows(const Samples& samples, const std::vector<Featur
     const auto first = static_cast<Eigen::Index>(size_of({features.begin(), begin}));
     FeatureFilter filter({begin, end});
     std::size_t column = 0;
+    double last_s = 0.0;
     for (std::size_t i = 0; i < samples.rows.size() && column < rows.size(); ++i) {
       if (i % kRowsPerQuestion == 0 && (stopped || (part == 0 && !control.may_continue()))) {
         stopped = true;
         return;
       }
+      if (!is_apart(samples, i, least_step_s, last_s)) continue;
       if (samples.begins_recording(i)) filter.reset();
       filter.update(samples.rows[i].tool, samples.rows[i].motion);
       if (i != rows[column]) continue;
@@ -335,18 +326,27 @@ Result<Eigen::MatrixXd> at_rows(const Samples& samples, const std::vector<Featur
 
 }  // namespace
 
+std::vector<std::size_t> contact_apart(const Samples& samples, double least_step_s) {
+  std::vector<std::size_t> rows;
+  double last_s = 0.0;
+  for (std::size_t i = 0; i < samples.rows.size(); ++i)
+    if (is_apart(samples, i, least_step_s, last_s) && in_contact(samples.rows[i].tool, 0.0)) rows.push_back(i);
+  return rows;
+}
+
 Result<Eigen::MatrixXd> features_at(const Samples& samples, const std::vector<FeatureSpec>& features,
                                     const std::vector<std::size_t>& rows, const FitControl& control) {
   return at_rows(
-      samples, features, rows, control, [](const std::vector<FeatureSpec>& some) { return some.size(); },
+      samples, features, rows, control, 0.0, [](const std::vector<FeatureSpec>& some) { return some.size(); },
       [](const FeatureFilter& filter) {
         return std::span(filter.vector().values).first(filter.plan().specs().size());
       });
 }
 
 Result<Eigen::MatrixXd> memory_at(const Samples& samples, const std::vector<FeatureSpec>& features,
-                                  const std::vector<std::size_t>& rows, const FitControl& control) {
-  return at_rows(samples, features, rows, control, &memory_size,
+                                  const std::vector<std::size_t>& rows, const FitControl& control,
+                                  double least_step_s) {
+  return at_rows(samples, features, rows, control, least_step_s, &memory_size,
                  [](const FeatureFilter& filter) { return filter.plan().memory_of(filter.state()); });
 }
 

@@ -1,23 +1,12 @@
-// Recordings with the estimates from each alone, and the table of samples of a training.
+// Recordings with the estimates from each alone, and the table of samples of a training. models/METHOD.md, Samples, has
+// the equations of free air, force zero, surface, contact, offsets and folds.
 //
-// Surface and force zero of a recording come from it alone; palpate check reports them, and a fit uses them. Free air
-// is a range at the outer end of the positions where the force during loading does not depend on the position; without
-// it, neither is identified. Force zero: the mean force there, without outliers. Surface: the onset of force in touches
-// of a surface at rest that begin in free air: the first, and those after 5 s of air, because a surface that still
-// recovers meets the tool late, by up to a millimetre. During loading,
-//   J(d0) = sum_i (f_i - zero - x_i^n (a (1 - k x_i) + b k x_i))^2,
-//           x_i = max(0, p_i - d0),  a, b >= 0,  n = 1 or 1.5,  k = n / ((n + 1) 3 mm)
-// is minimised over d0: a force law that is convex or concave and rises up to 3 mm.
-//
-// The table has every row of all recordings and is made once. Each estimate of a fit reads its columns;
-// nothing reads the recordings again. models/METHOD.md, Samples, defines contact, offsets and folds.
-//
-// Positions and forces are corrected by the offset of their recording, where that is clear. The
+// Surface and force zero of a recording come from it alone; palpate check reports them, and a fit uses them. The table
+// has the rows of all recordings and is made once. Each estimate of a fit reads its columns; nothing reads the
+// recordings again. Positions and forces are corrected by the offset of their recording, where that is clear. The
 // surface of the table is the median of the clear surfaces, because the next recording is as likely on one side of it
-// as on the other. Without one, recordings that press at every position have theirs outside of all positions, and
-// recordings that begin under a preload where the line through their first forces is 0. Neighbouring samples of a
-// stroke have correlated errors, so a fold never consists of single samples. Thread guarantee: immutable values and
-// pure functions, slow side.
+// as on the other. Neighbouring samples of a stroke have correlated errors, so a fold never consists of single samples.
+// Thread guarantee: immutable values and pure functions, slow side.
 #pragma once
 
 #include <Eigen/Core>
@@ -79,9 +68,6 @@ struct SurfaceEstimate {
   double raw_offset_m = 0.0;
   double standard_error_m = kUnknownError;  // infinite if the surface is not identified
   double force_zero_N = 0.0;                // to be subtracted from force_N; 0 if not significant
-  // The surface at the last touch at rest minus that at the first; the error is infinite with fewer than two.
-  double offset_drift_m = 0.0;
-  double offset_drift_error_m = kUnknownError;
 
   bool identified() const { return std::isfinite(standard_error_m); }
 };
@@ -128,20 +114,18 @@ inline constexpr std::size_t kRowsPerQuestion = 65536;
 // Surfaces that differ by less count as equal.
 inline constexpr double kLeastSurface_m = 0.5 * kWidestSurface_m;
 
-struct SampleColumns {
-  // One value a row; the longest recording first.
+struct Samples {
+  // Columns, one value a row; the longest recording first.
   std::vector<Sample> rows;    // positions from the surface of the table, forces without the force zero
   std::vector<int> recording;  // index of `offsets`
   std::vector<int> stroke;     // number of the contact, counted over all recordings; 0 before the first
   std::vector<int> fold;
+  int folds = 1;
   // Repetitions, of which one is left out as a whole where the error of a new recording is estimated: the recordings,
   // or the presses of a single one, each from the lowest position before a rise by half of the range.
   std::vector<int> unit;
-  std::vector<std::size_t> contact;  // the rows in contact, ascending
-};
+  int units = 1;
 
-struct SampleTable {
-  int folds = 1, units = 1;
   std::vector<RecordingOffset> offsets;  // one for each recording
   double surface_m = 0.0;                // of the table, in positions as recorded
   std::size_t recorded_rows = 0;         // of all recordings; more than kMaximumRows are thinned evenly
@@ -149,18 +133,16 @@ struct SampleTable {
   double force_noise_N = 0.0;            // the largest of all recordings
 
   // Ranges in contact.
-  double depth_m = 0.0;          // greatest
-  double force_N = 0.0;          // largest
-  double always_N = 0.0;         // only one row in a thousand of all has a smaller force
-  double lowest_force_N = 0.0;   // below 0 if the material is known to pull (adhesion), else 0
-  bool surface_outside = false;  // of all positions, each of which has a force: there is no free air
+  std::vector<std::size_t> contact;  // the rows in contact, ascending
+  double depth_m = 0.0;              // greatest
+  double force_N = 0.0;              // largest
+  double always_N = 0.0;             // only one row in a thousand of all has a smaller force
+  double lowest_force_N = 0.0;       // below 0 if the material is known to pull (adhesion), else 0
+  bool surface_outside = false;      // of all positions, each of which has a force: there is no free air
   double rms_velocity_m_per_s = 0.0;
-  std::size_t strokes = 0;
   double sample_s = 0.0;  // mean sampling period
   double longest_recording_s = 0.0;
-};
 
-struct Samples : SampleTable, SampleColumns {
   bool begins_recording(std::size_t row) const { return row == 0 || recording[row] != recording[row - 1]; }
   // At or below this magnitude a sample has no measured force, which shows only that the force is not positive. Minus
   // infinity where the material pulls: a force of 0 then counts like any other.
@@ -170,15 +152,17 @@ struct Samples : SampleTable, SampleColumns {
 // `recordings`: at least one. `most_rows`: the number of rows to keep. Errors: no sample in contact; interrupted.
 Result<Samples> make_samples(std::vector<PreparedRecordingPointer> recordings, const JndLine& jnd,
                              const FitControl& control = {}, std::size_t most_rows = kMaximumRows);
-// The rows that are at least `least_step_s` after the last one of their recording, with the same ranges. The filters of
+// The rows in contact of those that are at least `least_step_s` after the last one of their recording. The filters of
 // the features are exact for steps of any length.
-Samples thinned(const Samples& samples, double least_step_s);
+std::vector<std::size_t> contact_apart(const Samples& samples, double least_step_s);
 // The features at these rows (ascending), and the memory of features there, as in RecordingEnds: one column a row, SI.
-// Filters of two to eight features advance through all samples, each on a thread. Errors: interrupted.
+// Filters of one to eight features advance through all samples, or those that are apart, each on a thread. Errors:
+// interrupted.
 Result<Eigen::MatrixXd> features_at(const Samples& samples, const std::vector<FeatureSpec>& features,
                                     const std::vector<std::size_t>& rows, const FitControl& control = {});
 Result<Eigen::MatrixXd> memory_at(const Samples& samples, const std::vector<FeatureSpec>& features,
-                                  const std::vector<std::size_t>& rows, const FitControl& control = {});
+                                  const std::vector<std::size_t>& rows, const FitControl& control = {},
+                                  double least_step_s = 0.0);
 // Of each recording, in the order of `offsets`, for these features, at most kMaxFeatures.
 std::vector<RecordingEnds> recording_ends(const Samples& samples, const std::vector<FeatureSpec>& features);
 
@@ -205,20 +189,10 @@ struct RecordingFaults {
   std::size_t updates = 0;     // number of rows with an update that were kept
 
   bool any() const { return position_dropouts + force_dropouts > 0 || update_step_s > 0.0; }
-  // Adds those of the next rows of the recording.
-  void add(const RecordingFaults& next) {
-    rows += next.rows;
-    position_dropouts += next.position_dropouts;
-    force_dropouts += next.force_dropouts;
-    updates += next.updates;
-    if (update_step_s > 0.0) return;
-    update_step_s = next.update_step_s;
-    held_force = next.held_force;
-  }
 };
 
-// Removes the rows from `recording`.
-RecordingFaults remove_faults(Recording& recording);
+// Removes the rows from `recording`. `before`: those of the rows before these, to which they are added.
+RecordingFaults remove_faults(Recording& recording, const RecordingFaults& before = {});
 // Reads a recording and removes such rows. Errors: those of read_recording.
 Result<Recording> read_usable_recording(const std::string& path);
 // The same for a training, in blocks of some minutes, of which each is searched for faults by itself, so that memory

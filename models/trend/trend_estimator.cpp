@@ -52,25 +52,20 @@ DriveCurve basis_curve(FeatureKind kind, std::size_t k, double reference_depth_m
   return combined_curve(kind, one.data(), reference_depth_m);
 }
 
-// The parts of a list, in its order, as features of up to kMaxFeatureParts: the branches for each basis function as
-// their drive curve, then the bristles, whose deflection does not depend on it.
+// The features whose memory the columns come from: the branches with each basis function as their drive curve, from the
+// last to the first, and the bristles, whose deflection does not depend on it.
 std::vector<FeatureSpec> memory_features(const FeatureList& list, double reference_depth_m) {
   std::vector<FeatureSpec> features;
-  const auto add = [&](const FeatureSpec& candidate, std::size_t basis) {
-    for (std::size_t p = 0; p < candidate.part_count; ++p) {
-      const bool joins = !features.empty() && features.back().kind == candidate.kind &&
-                         features.back().slowing == candidate.slowing && features.back().part_count < kMaxFeatureParts;
-      if (!joins) features.emplace_back(FeatureSpec{candidate.kind}).slowing = candidate.slowing;
-      FeaturePart& part = features.back().parts[features.back().part_count++] = candidate.parts[p];
-      part.drive = basis_curve(candidate.kind, basis, reference_depth_m);
-      if (candidate.kind == FeatureKind::creep) part.threshold_m = reference_depth_m;
+  for (std::size_t k = kCurveTerms; k-- > 0;) {
+    for (FeatureSpec spec : list.features) {
+      if (!is_branch(spec.kind) && (k > 0 || !is_bristle(spec.kind))) continue;
+      for (FeaturePart& part : spec.parts) {
+        part.drive = basis_curve(spec.kind, k, reference_depth_m);
+        if (spec.kind == FeatureKind::creep) part.threshold_m = reference_depth_m;
+      }
+      features.push_back(spec);
     }
-  };
-  for (std::size_t k = 0; k < kCurveTerms; ++k)
-    for (const FeatureSpec& candidate : list.features)
-      if (is_branch(candidate.kind)) add(candidate, k);
-  for (const FeatureSpec& candidate : list.features)
-    if (is_bristle(candidate.kind)) add(candidate, 0);
+  }
   return features;
 }
 
@@ -195,11 +190,12 @@ DriveCurve combined_curve(FeatureKind kind, const double* weights, double refere
 }
 
 Result<TrendColumns> TrendColumns::make(const Samples& samples, FeatureList list, std::size_t most_rows,
-                                        const FitControl& control) {
+                                        const FitControl& control, double least_step_s) {
   TrendColumns made;
   made.samples_ = &samples;
-  made.stride_ = (samples.contact.size() + most_rows - 1) / most_rows;
-  for (std::size_t i = 0; i < samples.contact.size(); i += made.stride_) made.rows_.push_back(samples.contact[i]);
+  const std::vector<std::size_t> contact = contact_apart(samples, least_step_s);
+  made.stride_ = (contact.size() + most_rows - 1) / most_rows;
+  for (std::size_t i = 0; i < contact.size(); i += made.stride_) made.rows_.push_back(contact[i]);
   const std::vector<ElasticSpline> elastic = elastic_basis(samples);
   constexpr auto kBasis = static_cast<Eigen::Index>(kCurveTerms);
   Eigen::Index columns = 0, branches = 0;
@@ -213,7 +209,7 @@ Result<TrendColumns> TrendColumns::make(const Samples& samples, FeatureList list
     if (is_branch(spec.kind)) branches += static_cast<Eigen::Index>(spec.part_count);
   }
   const std::vector<FeatureSpec> features = memory_features(list, samples.depth_m);
-  const auto memory = memory_at(samples, features, made.rows_, control);
+  const auto memory = memory_at(samples, features, made.rows_, control, least_step_s);
   if (!memory) return memory.error();
   std::vector<double> thresholds_m;  // of the bristles
   for (const FeatureSpec& spec : features)
@@ -238,7 +234,7 @@ Result<TrendColumns> TrendColumns::make(const Samples& samples, FeatureList list
     }
     const auto values = memory->col(row);
     for (Eigen::Index branch = 0; branch < branches; ++branch)
-      for (Eigen::Index k = 0; k < kBasis; ++k) *to++ = values(k * branches + branch);
+      for (Eigen::Index k = kBasis; k-- > 0;) *to++ = values(k * branches + branch);
     auto bend_m = values.begin() + kBasis * branches;
     for (const double threshold_m : thresholds_m) {
       for (const DriveCurve& friction : frictions) *to++ = friction.at(depth_m) * *bend_m * (1.0 / threshold_m);
@@ -281,6 +277,8 @@ Eigen::MatrixXd values_of(const TrendColumns& columns, const Eigen::MatrixXd& so
   return values;
 }
 
+// The filters are exact for steps of any length, and a hand moves little in 4 ms.
+constexpr double kSearchStep_s = 3.9e-3;
 // At the greatest depth a relaxation time is exp(slowing) times that at the surface: 0.2 to 20. Simplest first.
 constexpr std::array kSlowings{0.0, 0.75, -0.75, 1.5, -1.5, 2.25, 3.0};
 
@@ -438,11 +436,10 @@ CrossValidated TrendEstimator::cross_validate(const ColumnList& columns, double 
 Result<FeatureList> select_slowing(const Samples& samples, const JndLine& jnd, const FeatureList& list,
                                    std::vector<PartGain>& gains, const FitControl& control) {
   if (!has_kind(list.features, FeatureKind::maxwell_spectrum)) return list;
-  // The filters are exact for steps of any length, and a hand moves little in 4 ms.
-  const Samples few = thinned(samples, 3.9e-3);
   std::vector<FoldErrors> errors;
   for (const double slowing : kSlowings) {
-    const auto columns = TrendColumns::make(few, with_slowing(shortened(list), slowing), kSearchRows, control);
+    const auto columns =
+        TrendColumns::make(samples, with_slowing(shortened(list), slowing), kSearchRows, control, kSearchStep_s);
     if (!columns) return columns.error();
     const TrendEstimator estimator(*columns, jnd, TrendEstimator::kFirstSmoothness);
     errors.push_back(estimator.cross_validate(estimator.all_columns()).errors);
