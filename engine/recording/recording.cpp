@@ -5,13 +5,13 @@
 #include <bit>
 #include <charconv>
 #include <filesystem>
-#include <limits>
 #include <memory>
 #include <string_view>
 #include <tuple>
 #include <utility>
 
 #include "engine/base/files.h"
+#include "engine/base/parallel.h"
 #include "engine/base/statistics.h"
 #include "engine/base/text.h"
 
@@ -63,8 +63,7 @@ EndForce end_force(const std::array<Slice, kSlices>& slices, bool low) {
 
 }  // namespace
 
-std::uint64_t content_hash(const Recording& recording) {
-  std::uint64_t hash = 0xCBF29CE484222325ULL;
+std::uint64_t content_hash(const Recording& recording, std::uint64_t hash) {
   for (const RecordingRow& row : recording.rows) {
     for (const double value : column_values(row)) {
       hash = (hash ^ std::bit_cast<std::uint64_t>(value)) * 0x100000001B3ULL;
@@ -168,8 +167,6 @@ namespace {
 // The longest comment: '#', a blank and the text fit in one line.
 constexpr std::size_t kMaximumCommentBytes = kMaximumLineBytes - 2;
 
-constexpr std::uint64_t kMostNotes = 20;
-
 // Appends one '#' line for each line of `comment`, up to the longest comment. Control characters become blanks, because
 // the reader would refuse them or take them for line ends.
 void append_comment(std::string& out, std::string_view comment) {
@@ -205,7 +202,7 @@ Result<RecordingWriter> RecordingWriter::create(const std::string& path, Recordi
   std::string head;
   for (const std::string& comment : comments) append_comment(head, comment);
   file->write(head + line_of(columns, [](std::size_t i) { return kColumnNames[i]; }));
-  return RecordingWriter(std::move(*file), path, columns, overwrite);
+  return RecordingWriter(std::move(*file), path, columns);
 }
 
 Status RecordingWriter::add(const RecordingRow& row) {
@@ -214,10 +211,6 @@ Status RecordingWriter::add(const RecordingRow& row) {
   const auto values = column_values(row);
   file_.write(line_of(columns_, [&](std::size_t i) { return shortest(values[i]); }));
   return {};
-}
-
-void RecordingWriter::note(const std::string& comment) {
-  if (++noted_ <= kMostNotes) append_comment(notes_, comment);
 }
 
 Status RecordingWriter::flush() {
@@ -232,14 +225,7 @@ Status RecordingWriter::commit() {
     const AtomicFile given_up = std::move(file_);
     return Error{path_ + ": cannot write: " + fault->text};
   }
-  if (notes_.empty()) return file_.commit();
-  if (noted_ > kMostNotes) append_comment(notes_, std::to_string(noted_ - kMostNotes) + " more such notes");
-  if (const Status flushed = flush(); !flushed) return flushed;
-  const auto rows =
-      read_plain_file(AtomicFile::part_of(path_), "the recording", "", std::numeric_limits<std::size_t>::max());
-  if (!rows || !write_file_atomically(path_, notes_ + *rows, overwrite_)) return file_.commit();
-  const AtomicFile copied = std::move(file_);
-  return {};
+  return file_.commit();
 }
 
 // Reads recordings, with the messages of all faults.
@@ -396,8 +382,9 @@ class RecordingReader {
   RecordingReader(std::istream& stream, std::string label)
       : stream_(stream), label_(std::move(label)), buffer_(kMaximumLineBytes + kBeyondLimit) {}
 
+  // Reads the next rows, at most `most_rows`.
   Result<Recording> read(std::size_t most_rows, std::size_t expected_rows) {
-    if (!read_header()) return *error_;
+    if (roles_.empty() && !read_header()) return *error_;
     Recording recording{printable(std::filesystem::path(label_).stem().string(), std::string::npos),
                         {has(ColumnRole::kVelocity), has(ColumnRole::kAcceleration)},
                         {}};
@@ -557,6 +544,25 @@ Result<Recording> read_recording(const std::string& path, std::size_t most_rows)
   std::error_code unknown;  // then the size is the largest number
   const auto bytes = std::filesystem::file_size(path, unknown);
   return RecordingReader(**file, path).read(most_rows, std::min<std::size_t>(bytes / kShortestRow, kMostExpected));
+}
+
+Status read_recording_blocks(const std::string& path, std::size_t block_rows,
+                             const std::function<void(Recording block)>& use) {
+  const auto file = open_plain_file(path, "a recording (CSV)");
+  if (!file) return file.error();
+  RecordingReader reader(**file, path);
+  Result<Recording> block = reader.read(block_rows, block_rows);
+  while (block && !block->rows.empty()) {
+    Result<Recording> next = Recording{};
+    parallel_for(2, [&](int part) {
+      if (part == 0)
+        next = reader.read(block_rows, block_rows);
+      else
+        use(std::move(*block));
+    });
+    block = std::move(next);
+  }
+  return block ? Status() : block.error();
 }
 
 }  // namespace palpate

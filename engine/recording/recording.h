@@ -12,6 +12,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <istream>
 #include <limits>
 #include <optional>
@@ -44,8 +45,10 @@ struct Recording {
   std::vector<RecordingRow> rows;
 };
 
-// A hash of the numbers of a recording, independent of its name: FNV-1a with an additional shift.
-std::uint64_t content_hash(const Recording& recording);
+// A hash of the numbers of a recording, independent of its name: FNV-1a with an additional shift. `before`: that of the
+// rows before these.
+inline constexpr std::uint64_t kHashOfNoRows = 0xCBF29CE484222325ULL;
+std::uint64_t content_hash(const Recording& recording, std::uint64_t before = kHashOfNoRows);
 
 inline constexpr std::size_t kRecordingMinimumRows = 10;
 inline constexpr std::size_t kAllRows = std::numeric_limits<std::size_t>::max();
@@ -55,6 +58,10 @@ inline constexpr std::size_t kAllRows = std::numeric_limits<std::size_t>::max();
 Result<Recording> read_recording(const std::string& path, std::size_t most_rows = kAllRows);
 // The same for any stream; `label` replaces the path.
 Result<Recording> read_recording(std::istream& stream, const std::string& label, std::size_t most_rows = kAllRows);
+// Reads a recording of any length in blocks of at most `block_rows` rows. `use`: called with one after the other while
+// the next is read on another thread. Errors: as read_recording, after the blocks before the fault.
+Status read_recording_blocks(const std::string& path, std::size_t block_rows,
+                             const std::function<void(Recording block)>& use);
 
 // Writes `recording` to `path` atomically (AtomicFile). Numbers read back as the same doubles. `comments` become '#'
 // lines, one for each line of text. Errors: those of AtomicFile; a row or recording that breaks the rules above. Then
@@ -156,9 +163,6 @@ class RecordingWriter {
   // Buffered. Errors: a row that breaks a rule (engine/recording/recording.h); it is not written.
   Status add(const RecordingRow& row);
 
-  // Adds a comment, which `commit` writes above the others; for a writer with a part.
-  void note(const std::string& comment);
-
   std::uint64_t rows() const { return rules_.rows(); }
   // Whether an input/output error has occurred, which `commit` will return.
   bool failed() const noexcept { return file_.failed(); }
@@ -168,21 +172,18 @@ class RecordingWriter {
   // The number of rows that `flush` has added.
   std::uint64_t flushed_rows() const noexcept { return flushed_rows_; }
 
-  // The file gets its notes when it is complete; without room on the disk for a copy it is left without them. Errors:
-  // those of AtomicFile::commit; fewer than 10 rows, or a rate outside the reader's range, which leave no file.
+  // Errors: those of AtomicFile::commit; fewer than 10 rows, or a rate outside the reader's range, which leave no file.
   Status commit();
 
  private:
-  RecordingWriter(AtomicFile file, std::string path, RecordingColumns columns, bool overwrite)
-      : file_(std::move(file)), path_(std::move(path)), columns_(columns), overwrite_(overwrite) {}
+  RecordingWriter(AtomicFile file, std::string path, RecordingColumns columns)
+      : file_(std::move(file)), path_(std::move(path)), columns_(columns) {}
 
   AtomicFile file_;
   std::string path_;
   RecordingColumns columns_;
-  bool overwrite_;
   RowRules rules_;
-  std::string notes_;  // '#' lines
-  std::uint64_t noted_ = 0, flushed_rows_ = 0;
+  std::uint64_t flushed_rows_ = 0;
 };
 
 }  // namespace palpate

@@ -37,8 +37,6 @@ constexpr double kMonotonicShare = 0.1;
 constexpr double kHoldOfStroke = 0.5;
 // Ten rows in a period of the fastest motion of a hand, 10 Hz.
 constexpr double kSlowRate_Hz = 100.0;
-// At 650 N/m this changes the force by the JND at 0 N.
-constexpr double kSurfaceDrift_m = 0.1e-3;
 // One to the full depth in each of the three bands of speed, and two shallower ones.
 constexpr int kFewStrokes = 5;
 // A recording with fewer rows is an attempt, and not that of a broken sensor.
@@ -196,10 +194,16 @@ class Checker {
   }
 
   void check_sampling() {
-    const double rate_Hz = 1.0 / measures_.median_step_s;
+    const double rate_Hz = static_cast<double>(prepared_.stride) / measures_.median_step_s;
     add("rate", Severity::note, rate_Hz,
         words("the recording has %.4g rows per second and lasts %.3g s", rate_Hz, measures_.duration_s),
         rate_Hz < kSlowRate_Hz ? "this rate suits only slow motion: record presses by hand at 500 Hz or more" : "");
+    if (prepared_.stride > 1) {
+      const auto every = static_cast<double>(prepared_.stride);
+      add("thinned", Severity::note, every,
+          words("one of %.0f of its %zu rows is used, with the motion from all", every, prepared_.recorded_rows),
+          "as a test, split it to replay all of it");
+    }
     if (measures_.largest_step_s <= std::max(kGap_s, kGapSteps * measures_.median_step_s)) return;
     add("gap", Severity::warning, measures_.largest_step_s,
         words("nothing was recorded for %.3g s from %.4g s on", measures_.largest_step_s, measures_.largest_step_at_s),
@@ -316,12 +320,6 @@ class Checker {
     if (surface_.air.found && !(surface_.air.tool_mass_kg > 0.0) && pull_N > certain_force_N(noise_N_)) {
       add("adhesion", Severity::note, pull_N,
           words("the material pulls the tool with up to %.3g N: a fitted model renders this adhesion", pull_N), "");
-    }
-    if (std::isfinite(surface_.offset_drift_error_m) &&
-        std::abs(surface_.offset_drift_m) > std::max(kSurfaceDrift_m, 3.0 * surface_.offset_drift_error_m)) {
-      add("surface_drift", Severity::warning, surface_.offset_drift_m,
-          words("the surface moves by %+.3g mm between the first touch and the last", 1e3 * surface_.offset_drift_m),
-          "the specimen creeps or slips: fasten it, and let it recover between strokes");
     }
     if (measures_.contact_rows == 0) {  // as recorded, the surface at 0
       add("no_contact", Severity::fatal, measures_.highest_position_m,

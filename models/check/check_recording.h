@@ -126,13 +126,9 @@ struct RecordingCheck {
 RecordingCheck check_recording(const PreparedRecording& prepared, const CheckRequest& request,
                                const RecordingFaults& faults = {});
 
-// Only the first rows of a longer recording are checked and fitted: 100 minutes at 1 kHz.
-inline constexpr std::size_t kMostCheckedRows = 6000000;
-
 struct CheckedFile {
   std::string path;
   PreparedRecordingPointer prepared;  // the checked rows, without its faults
-  bool whole = true;                  // false: the file is longer than kMostCheckedRows
   RecordingCheck check;
 
   const Recording& recording() const { return prepared->recording; }

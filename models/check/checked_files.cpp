@@ -149,11 +149,9 @@ std::optional<double> find_contradiction_N(const PreparedRecording& first, const
 
 Result<CheckedFile> check_recording_file(const std::string& path, const CheckRequest& request) {
   RecordingFaults faults;
-  auto recording = read_usable_recording(path, kMostCheckedRows, &faults);
-  if (!recording) return recording.error();
-  const bool whole = faults.rows < kMostCheckedRows;
-  PreparedRecordingPointer prepared = prepare_recording(std::move(*recording));
-  CheckedFile file{path, prepared, whole, check_recording(*prepared, request, faults)};
+  const auto prepared = read_prepared_recording(path, faults);
+  if (!prepared) return prepared.error();
+  CheckedFile file{path, *prepared, check_recording(**prepared, request, faults)};
   // Advice names this file, and a new one beside it, so that its commands can be copied.
   const std::filesystem::path given(path);
   const std::string corrected = (given.parent_path() / (given.stem().string() + "_zeroed.csv")).string();
@@ -164,11 +162,6 @@ Result<CheckedFile> check_recording_file(const std::string& path, const CheckReq
       if (at == std::string::npos) continue;
       finding.advice.replace(at, word.size(), " " + shell_word(name) + (word.back() == ' ' ? " " : ""));
     }
-  }
-  if (!whole) {
-    add_finding(file, {"truncated", Severity::warning, static_cast<double>(kMostCheckedRows),
-                       "only the first " + std::to_string(kMostCheckedRows) + " rows are used",
-                       "split the recording to use all of it"});
   }
   return file;
 }

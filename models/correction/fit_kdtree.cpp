@@ -1,6 +1,7 @@
 // The kD-tree method. The sites are split into two leaves, whose barycentres are the centres. Then, in each step, the
 // function is fitted, the sample with the largest error over the JND is found, and its leaf is split at the median of
-// its widest dimension, which replaces one centre by two.
+// its widest dimension, which replaces one centre by two. From 100 leaves on a step also splits those with the next
+// largest errors, one for each hundred leaves, so that the time grows with the number of centres and not its square.
 //
 // A refit costs one new pair of columns, not a new matrix: the polynomial tail is projected out of the columns, and
 // their Gram matrix is updated and factorised (Cholesky, with a relative ridge of 1e-13). Duplicate sites stay in one
@@ -23,7 +24,8 @@
 namespace palpate {
 namespace {
 
-using Leaf = std::vector<Eigen::Index>;  // sites
+using Leaf = std::vector<Eigen::Index>;       // sites
+constexpr std::size_t kLeavesOfASplit = 100;  // the paper's largest number of centres
 
 Eigen::VectorXd barycentre(const Eigen::MatrixXd& points, const Leaf& leaf) {
   Eigen::VectorXd sum = Eigen::VectorXd::Zero(points.rows());
@@ -148,18 +150,23 @@ Result<FittedCorrection> fit_kdtree(const MethodTask& task, const FitControl& co
     const Eigen::ArrayXd error = fit.residual().array().abs();
     Eigen::ArrayXd excess =
         (sites.row_scale.array() > 0.0).select(error / (sites.row_scale.array() * task.jnd_N.array()), 0.0);
-    Leaf upper;
-    Eigen::Index worst = 0;
-    std::size_t lower = 0;
-    while (upper.empty() && excess.maxCoeff(&worst) >= 0.0) {
-      lower = leaf_of[static_cast<std::size_t>(worst)];
-      upper = split(sites.points, leaves[lower]);
-      if (upper.empty()) excess(leaves[lower]).setConstant(-1.0);
+    std::vector<std::size_t> changed;
+    for (std::size_t splits = 1 + leaves.size() / kLeavesOfASplit; splits > 0 && leaves.size() < most; --splits) {
+      Leaf upper;
+      Eigen::Index worst = 0;
+      std::size_t lower = 0;
+      while (upper.empty() && excess.maxCoeff(&worst) >= 0.0) {
+        lower = leaf_of[static_cast<std::size_t>(worst)];
+        excess(leaves[lower]).setConstant(-1.0);
+        upper = split(sites.points, leaves[lower]);
+      }
+      if (upper.empty()) break;
+      for (const Eigen::Index site : upper) leaf_of[static_cast<std::size_t>(site)] = leaves.size();
+      changed.insert(changed.end(), {lower, leaves.size()});
+      leaves.push_back(std::move(upper));
     }
-    if (upper.empty()) break;
-    for (const Eigen::Index site : upper) leaf_of[static_cast<std::size_t>(site)] = leaves.size();
-    leaves.push_back(std::move(upper));
-    set({lower, leaves.size() - 1});
+    if (changed.empty()) break;
+    set(changed);
   }
   return fit_centres(task, centres.leftCols(static_cast<Eigen::Index>(leaves.size())), "no leaf can be split further");
 }

@@ -82,10 +82,11 @@ void finish_sites(PreparedTraining& prepared, const ModelPlan& plan) {
     // Where no force is measured and the trend is below 0, no correction is needed.
     const bool needless = std::abs(force_N) <= no_force_N && trend_N < 0.0;
     sites.target_N(k) = needless ? 0.0 : force_N - trend_N;
-    // With the force, eq. 8 of the paper. A dwell of many samples counts as at most 16.
+    // With the force, eq. 8 of the paper. The mean of n errors of a JND is one of 1 / sqrt(n) JND: it counts until it
+    // is kUnnoticed_jnd, with 16 samples of a dwell.
     const double unit_N =
         plan.base == Base::trend ? common.jnd.at(force_N) : std::max(std::abs(force_N), kReductionForce_N);
-    sites.row_scale(k) = 1.0 / unit_N * std::sqrt(std::min(sites.samples(k), 16.0));
+    sites.row_scale(k) = 1.0 / unit_N * std::min(std::sqrt(sites.samples(k)), 1.0 / kUnnoticed_jnd);
   }
   common.cover = make_cover(sites.points);
   common.correction_limit_N =

@@ -167,13 +167,8 @@ struct Prediction {
 // fold; empty: none, the errors are those of the trend.
 std::vector<Prediction> predictions_of(const ResidualRows& rows, const ModelData& common,
                                        const std::vector<CorrectionPtr>& corrections);
-// Fits the error bound of a model (models/model/fitted_model.h): non-negative least squares with rows scaled by 1 /
-// JND, then all coefficients times a quantile over units of the factor that each needs: the largest of the 95 %
-// quantiles of its error over the bound among all its rows and the first, the deepest and the fastest tenth of them.
-// Units, unlike rows, are exchangeable if the next recording is made like these, so that a new one needs at most this
-// factor with a probability of 9 in 10 (Lei et al. 2018, section 2.2) or, with K < 9 of them, K / (K + 1). The floor is
-// at least kForceFloor_N. `common`: with the JND and the largest force. None with fewer than 50 predictions or two
-// units: one does not show how the next one differs.
+// Fits the error bound of a model (models/METHOD.md, Bound). `common`: with the JND and the largest force. None with
+// fewer than 50 predictions or two units: one does not show how the next one differs.
 std::optional<ErrorBound> fit_bound(const std::vector<Prediction>& predictions, const ModelData& common);
 
 struct CorrectionChoice {
@@ -198,16 +193,9 @@ struct TrainingScene {
   JndLine jnd;
 };
 
-// Selects what Hoever & Harders (2009) leave open for a fit to the measured force, by cross-validation: the order of
-// the polyharmonic kernel, the normalisation of the features, and the regularisation.
-//
-// Normalisation divides feature k by range_k^a (4 sigma_k)^(1 - a), with a = 1/2 or 1. Methods that select centres are
-// regularised by the truncation of their pseudo-inverse (eq. 8), and the direct interpolation by the smoothing of its
-// Cholesky factor, which takes the place of the truncated pseudo-inverse of eq. 4: the first is a step and the second
-// lambda / (lambda + smoothing) over the eigenvalues lambda (Hansen 1998, section 4.2).
-//
-// Each candidate is fitted on random centres to the sites outside of a fold and predicts the samples in contact of that
-// fold (models/samples/selection.h). The lowest score wins.
+// What Hoever & Harders (2009) leave open for a fit to the measured force is selected by cross-validation
+// (models/METHOD.md, Methods on the measured force): the order of the polyharmonic kernel, the normalisation of the
+// features, feature k divided by range_k^a (4 sigma_k)^(1 - a), and the regularisation.
 struct OpenChoices {
   KernelKind kernel = KernelKind::cubic;
   double range_exponent = 0.5;  // a

@@ -255,6 +255,8 @@ std::optional<ErrorBound> fit_bound(const std::vector<Prediction>& predictions, 
     right += row * scale * one.error_N;
   }
   const Eigen::VectorXd shape = solve_non_negative(gram, right);
+  // One unit of distance beyond the data nothing is known but the range of the force: the mean error of a prediction in
+  // its middle is a quarter of it, and the largest error of any prediction all of it.
   const double least_per_distance_N = 0.25 * common.largest_force_N;
   // Above 0, so that the factor enlarges it.
   ErrorBound bound{std::max(shape(0), 1e-3), shape(1), std::max(shape(2), least_per_distance_N)};
@@ -263,7 +265,6 @@ std::optional<ErrorBound> fit_bound(const std::vector<Prediction>& predictions, 
   const double factor = nth_smallest(factors, conformal_rank(factors.size(), 0.9));
   bound.floor_N = std::max(factor * bound.floor_N, kForceFloor_N);
   bound.per_force *= factor;
-  // One unit of distance beyond the data nothing is known but the range of the force.
   bound.per_distance_N = std::clamp(factor * bound.per_distance_N, least_per_distance_N,
                                     std::max(least_per_distance_N, common.largest_force_N));
   return bound;

@@ -49,7 +49,7 @@ Result<CheckedFile> checked(const palpate_recording& given, const CheckRequest& 
   if (Status status = check_rows(recording); !status) return status.error();
   const RecordingFaults faults = remove_faults(recording);
   const auto prepared = prepare_recording(std::move(recording));
-  return CheckedFile{prepared->recording.name, prepared, true, check_recording(*prepared, request, faults)};
+  return CheckedFile{prepared->recording.name, prepared, check_recording(*prepared, request, faults)};
 }
 
 }  // namespace

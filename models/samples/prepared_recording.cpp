@@ -263,17 +263,6 @@ Onset find_onset(const std::vector<Sample>& rows, const std::vector<Touch>& touc
   return onset;
 }
 
-void estimate_drift(SurfaceEstimate& estimate, const std::vector<Sample>& rows, const std::vector<Touch>& touches,
-                    double zero_N, double force_noise_N) {
-  if (touches.size() < 2) return;
-  const Onset first = find_onset(rows, {touches.front()}, zero_N, force_noise_N);
-  const Onset last = find_onset(rows, {touches.back()}, zero_N, force_noise_N);
-  estimate.offset_drift_error_m =
-      std::hypot(std::hypot(first.standard_error_m, last.standard_error_m), std::hypot(first.misfit_m, last.misfit_m));
-  const double drift_m = last.at_m - first.at_m;
-  if (std::abs(drift_m) > kSignificantErrors * estimate.offset_drift_error_m) estimate.offset_drift_m = drift_m;
-}
-
 // `recorded`: rows of a recording, in time order.
 SurfaceEstimate estimate_surface(const std::vector<Sample>& recorded, double force_noise_N) {
   SurfaceEstimate estimate;
@@ -304,33 +293,85 @@ SurfaceEstimate estimate_surface(const std::vector<Sample>& recorded, double for
   estimate.standard_error_m = onset.standard_error_m;
   const bool significant = std::abs(onset.at_m) > std::max(kLeastOffset_m, kSignificantErrors * onset.standard_error_m);
   if (significant) estimate.offset_m = onset.at_m;
-  estimate_drift(estimate, rows, touches, air.zero_N, force_noise_N);
   return estimate;
 }
+
+// Prepares a recording block by block.
+class Preparation {
+ public:
+  // `block`: without faults.
+  void add(Recording block) {
+    if (block.rows.empty()) return;
+    if (!estimator_) {
+      made_->sensor = identify_sensor(block.rows.data(), block.rows.size(), block.columns);
+      made_->force_noise_N = identify_force_noise_N(block.rows.data(), block.rows.size());
+      estimator_.emplace(made_->sensor);
+    }
+    made_->content_hash = content_hash(block, made_->content_hash);
+    std::size_t count = kept_.size();
+    if (count == 0)
+      made_->recording = std::move(block);
+    else
+      kept_.insert(kept_.end(), block.rows.begin(), block.rows.end());
+    for (std::size_t i = count; i < kept_.size(); ++i) {
+      const MotionEstimate motion = estimator_->update(tool_sample(kept_[i]));
+      if (made_->recorded_rows++ % made_->stride != 0) continue;
+      kept_[count++] = kept_[i];
+      made_->motion.push_back(motion);
+    }
+    kept_.resize(count);
+    while (kept_.size() > kMostKeptRows) {
+      if (made_->stride == 1) keep_onset();
+      keep_every_second(kept_);
+      keep_every_second(made_->motion);
+      made_->stride *= 2;
+    }
+  }
+
+  PreparedRecordingPointer finish() {
+    if (made_->stride == 1) keep_onset();
+    made_->surface = estimate_surface(made_->rows, made_->force_noise_N);
+    return std::move(made_);
+  }
+
+ private:
+  static void keep_every_second(auto& values) {
+    for (std::size_t i = 0; 2 * i < values.size(); ++i) values[i] = values[2 * i];
+    values.resize((values.size() + 1) / 2);
+  }
+
+  // A long recording is thinned as far as the onset allows, and then cut.
+  void keep_onset() {
+    const std::size_t count = kept_.size();
+    const double step_s = (kept_.back().time_s - kept_.front().time_s) / static_cast<double>(count);
+    const auto coarsest = static_cast<std::size_t>(kCoarsestOnset_s / std::max(step_s, 1e-6));
+    const std::size_t stride = std::max<std::size_t>(1, std::min((count + kOnsetRows - 1) / kOnsetRows, coarsest));
+    made_->rows.reserve(std::min(count / stride + 1, kOnsetRows));
+    for (std::size_t i = 0; i < count && made_->rows.size() < kOnsetRows; i += stride)
+      made_->rows.push_back({tool_sample(kept_[i]), made_->motion[i], kept_[i].force_N});
+  }
+
+  std::shared_ptr<PreparedRecording> made_ = std::make_shared<PreparedRecording>();
+  std::vector<RecordingRow>& kept_ = made_->recording.rows;
+  std::optional<MotionEstimator> estimator_;
+};
 
 }  // namespace
 
 PreparedRecordingPointer prepare_recording(Recording recording) {
-  const auto prepared = std::make_shared<PreparedRecording>();
-  prepared->recording = std::move(recording);
-  const Recording& given = prepared->recording;
-  prepared->content_hash = content_hash(given);
-  prepared->sensor = identify_sensor(given.rows.data(), given.rows.size(), given.columns);
-  prepared->force_noise_N = identify_force_noise_N(given.rows.data(), given.rows.size());
-  MotionEstimator estimator(prepared->sensor);
-  // A long recording is thinned as far as the onset allows, and then cut.
-  const std::size_t count = given.rows.size();
-  const double step_s = (given.rows.back().time_s - given.rows.front().time_s) / static_cast<double>(count);
-  const auto coarsest = static_cast<std::size_t>(kCoarsestOnset_s / std::max(step_s, 1e-6));
-  const std::size_t stride = std::max<std::size_t>(1, std::min((count + kOnsetRows - 1) / kOnsetRows, coarsest));
-  prepared->rows.reserve(std::min(count / stride + 1, kOnsetRows));
-  for (std::size_t i = 0; i < count && prepared->rows.size() < kOnsetRows; ++i) {
-    const ToolSample sample = tool_sample(given.rows[i]);
-    const MotionEstimate motion = estimator.update(sample);
-    if (i % stride == 0) prepared->rows.push_back({sample, motion, given.rows[i].force_N});
-  }
-  prepared->surface = estimate_surface(prepared->rows, prepared->force_noise_N);
-  return prepared;
+  Preparation preparation;
+  preparation.add(std::move(recording));
+  return preparation.finish();
+}
+
+Result<PreparedRecordingPointer> read_prepared_recording(const std::string& path, RecordingFaults& faults) {
+  constexpr std::size_t kRowsOfABlock = 1000000;  // 40 MB
+  Preparation preparation;
+  const Status read = read_recording_blocks(path, kRowsOfABlock, [&](Recording block) {
+    faults = remove_faults(block, faults);
+    preparation.add(std::move(block));
+  });
+  return read ? Result(preparation.finish()) : read.error();
 }
 
 std::size_t first_test_row(const Recording& recording) {

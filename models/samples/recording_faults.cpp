@@ -161,16 +161,16 @@ void keep_updates(Rows& rows, const std::vector<Run>& runs, double interval) {
 
 }  // namespace
 
-RecordingFaults remove_faults(Recording& recording) {
-  RecordingFaults faults;
+RecordingFaults remove_faults(Recording& recording, const RecordingFaults& before) {
+  RecordingFaults faults = before;
   Rows& rows = recording.rows;
-  faults.rows = rows.size();
+  faults.rows += rows.size();
   if (rows.size() < kRecordingMinimumRows) return faults;
   const SensorSpec sensor = identify_sensor(rows.data(), rows.size(), recording.columns);
   const double position_noise_m = std::max(sensor.encoder_step_m, sensor.position_noise_m);
   std::vector<bool> out(rows.size(), false);
-  faults.position_dropouts = mark(dropouts(rows, &RecordingRow::position_m, position_noise_m, true), out);
-  faults.force_dropouts =
+  faults.position_dropouts += mark(dropouts(rows, &RecordingRow::position_m, position_noise_m, true), out);
+  faults.force_dropouts +=
       mark(dropouts(rows, &RecordingRow::force_N, identify_force_noise_N(rows.data(), rows.size()), false), out);
   std::size_t kept = 0;
   for (std::size_t i = 0; i < rows.size(); ++i)
@@ -191,15 +191,13 @@ RecordingFaults remove_faults(Recording& recording) {
   const double step_s = (rows.back().time_s - rows.front().time_s) / static_cast<double>(rows.size() - 1);
   faults.update_step_s = interval * step_s;
   keep_updates(rows, updates, interval);
-  faults.updates = rows.size();
+  faults.updates += rows.size();
   return faults;
 }
 
-Result<Recording> read_usable_recording(const std::string& path, std::size_t most_rows, RecordingFaults* faults) {
-  auto recording = read_recording(path, most_rows);
-  if (!recording) return recording;
-  const RecordingFaults found = remove_faults(*recording);
-  if (faults != nullptr) *faults = found;
+Result<Recording> read_usable_recording(const std::string& path) {
+  auto recording = read_recording(path);
+  if (recording) remove_faults(*recording);
   return recording;
 }
 

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <tuple>
 
 #include "engine/base/statistics.h"
@@ -64,20 +65,15 @@ void set_offsets(Samples& samples, const std::vector<PreparedRecordingPointer>& 
   }
 }
 
-// The rows of one recording, with its offset. Every `stride`-th is kept, with the motion that was estimated from all.
+// Every `stride`-th row of one recording, with its offset.
 Status add_rows(Samples& samples, const PreparedRecording& prepared, std::size_t stride, const FitControl& control) {
   const auto index = static_cast<std::size_t>(samples.recording.empty() ? 0 : samples.recording.back() + 1);
   const RecordingOffset& offset = samples.offsets[index];
   const double surface_m = samples.surface_m + offset.offset_m;
   const std::vector<RecordingRow>& recorded = prepared.recording.rows;
-  MotionEstimator estimator(prepared.sensor);
-  const bool all_known = prepared.rows.size() == recorded.size();
-  for (std::size_t i = 0; i < recorded.size(); ++i) {
-    if (i % kRowsPerQuestion == 0 && !control.may_continue()) return interrupted();
-    Sample sample{tool_sample(recorded[i]), {}, recorded[i].force_N};
-    sample.motion = all_known ? prepared.rows[i].motion : estimator.update(sample.tool);
-    if (i % stride != 0) continue;
-    sample.force_N -= offset.force_zero_N;
+  for (std::size_t i = 0; i < recorded.size(); i += stride) {
+    if (i % kRowsPerQuestion < stride && !control.may_continue()) return interrupted();
+    Sample sample{tool_sample(recorded[i]), prepared.motion[i], recorded[i].force_N - offset.force_zero_N};
     sample.tool.position_m -= surface_m;
     sample.motion.position_m -= surface_m;
     samples.rows.push_back(sample);
@@ -124,7 +120,6 @@ void measure(Samples& samples, const JndLine& jnd) {
   const auto count = static_cast<double>(samples.contact.size());
   const bool pulling = pulls >= std::max(10.0, 1e-3 * count);
   if (pulling && lowest_N < -certain_force_N(samples.force_noise_N)) samples.lowest_force_N = lowest_N;
-  samples.strokes = static_cast<std::size_t>(stroke);
   samples.sample_s = duration_s / std::max(1.0, steps);
   // A tool that never moved still needs a scale: 1 um/s.
   samples.rms_velocity_m_per_s = std::max(1e-6, count > 0.0 ? std::sqrt(squares / count) : 0.0);
@@ -241,11 +236,13 @@ Result<Samples> make_samples(std::vector<PreparedRecordingPointer> recordings, c
   // irrelevant.
   std::ranges::stable_sort(recordings, {}, [](const PreparedRecordingPointer& one) {
     const Recording& recording = one->recording;
-    return std::tuple(-static_cast<std::ptrdiff_t>(recording.rows.size()), one->content_hash, recording.name);
+    return std::tuple(-static_cast<std::ptrdiff_t>(one->recorded_rows), one->content_hash, recording.name);
   });
   Samples samples;
+  std::size_t kept_rows = 0;
   for (const PreparedRecordingPointer& one : recordings) {
-    samples.recorded_rows += one->recording.rows.size();
+    samples.recorded_rows += one->recorded_rows;
+    kept_rows += one->recording.rows.size();
     const SensorSpec sensor{one->sensor.encoder_step_m, one->sensor.position_noise_m};
     samples.sensor = std::max(samples.sensor, sensor, [](const SensorSpec& a, const SensorSpec& b) {
       return std::tie(a.encoder_step_m, a.position_noise_m) < std::tie(b.encoder_step_m, b.position_noise_m);
@@ -253,8 +250,8 @@ Result<Samples> make_samples(std::vector<PreparedRecordingPointer> recordings, c
     samples.force_noise_N = std::max(samples.force_noise_N, one->force_noise_N);
   }
   set_offsets(samples, recordings);
-  const std::size_t stride = std::max<std::size_t>(1, (samples.recorded_rows + most_rows - 1) / most_rows);
-  samples.rows.reserve(samples.recorded_rows / stride + recordings.size());
+  const std::size_t stride = std::max<std::size_t>(1, (kept_rows + most_rows - 1) / most_rows);
+  samples.rows.reserve(kept_rows / stride + recordings.size());
   for (const PreparedRecordingPointer& one : recordings)
     if (Status status = add_rows(samples, *one, stride, control); !status) return status.error();
   const bool clear = std::ranges::any_of(recordings, [](const auto& one) { return one->surface.identified(); });
@@ -284,68 +281,93 @@ Result<Samples> make_samples(std::vector<PreparedRecordingPointer> recordings, c
   return samples;
 }
 
-Samples thinned(const Samples& samples, double least_step_s) {
-  Samples few = samples;
-  few.rows.clear();
-  few.contact.clear();
-  for (std::vector<int>* column : {&few.recording, &few.stroke, &few.fold}) column->clear();
+namespace {
+
+// Whether a row begins a recording or is at least `least_step_s` after the time `last_s`, which then becomes its own.
+bool is_apart(const Samples& samples, std::size_t row, double least_step_s, double& last_s) {
+  const double time_s = samples.rows[row].tool.time_s;
+  if (!samples.begins_recording(row) && time_s - last_s < least_step_s) return false;
+  last_s = time_s;
+  return true;
+}
+
+// The `values` of filters of these features at the rows, one column a row. `size_of`: their number for some features.
+Result<Eigen::MatrixXd> at_rows(const Samples& samples, const std::vector<FeatureSpec>& features,
+                                const std::vector<std::size_t>& rows, const FitControl& control, double least_step_s,
+                                const auto& size_of, const auto& values) {
+  // A filter for each of two threads, or more; a feature does not depend on the others of its filter.
+  const std::size_t count = features.size();
+  const std::size_t parts = std::min(count, std::max<std::size_t>(2, (count + kMaxFeatures - 1) / kMaxFeatures));
+  Eigen::MatrixXd all(static_cast<Eigen::Index>(size_of(features)), static_cast<Eigen::Index>(rows.size()));
+  std::atomic<bool> stopped = false;
+  parallel_for(static_cast<int>(parts), [&](int part) {
+    const auto at = static_cast<std::size_t>(part);
+    const auto begin = features.begin() + static_cast<std::ptrdiff_t>(count * at / parts);
+    const auto end = features.begin() + static_cast<std::ptrdiff_t>(count * (at + 1) / parts);
+    const auto first = static_cast<Eigen::Index>(size_of({features.begin(), begin}));
+    FeatureFilter filter({begin, end});
+    std::size_t column = 0;
+    double last_s = 0.0;
+    for (std::size_t i = 0; i < samples.rows.size() && column < rows.size(); ++i) {
+      if (i % kRowsPerQuestion == 0 && (stopped || (part == 0 && !control.may_continue()))) {
+        stopped = true;
+        return;
+      }
+      if (!is_apart(samples, i, least_step_s, last_s)) continue;
+      if (samples.begins_recording(i)) filter.reset();
+      filter.update(samples.rows[i].tool, samples.rows[i].motion);
+      if (i != rows[column]) continue;
+      std::ranges::copy(values(filter), all.col(static_cast<Eigen::Index>(column++)).begin() + first);
+    }
+  });
+  if (stopped) return interrupted();
+  return all;
+}
+
+}  // namespace
+
+std::vector<std::size_t> contact_apart(const Samples& samples, double least_step_s) {
+  std::vector<std::size_t> rows;
   double last_s = 0.0;
-  for (std::size_t i = 0; i < samples.rows.size(); ++i) {
-    const double time_s = samples.rows[i].tool.time_s;
-    if (!samples.begins_recording(i) && time_s - last_s < least_step_s) continue;
-    last_s = time_s;
-    if (in_contact(samples.rows[i].tool, 0.0)) few.contact.push_back(few.rows.size());
-    few.rows.push_back(samples.rows[i]);
-    few.recording.push_back(samples.recording[i]);
-    few.stroke.push_back(samples.stroke[i]);
-    few.fold.push_back(samples.fold[i]);
-  }
-  return few;
+  for (std::size_t i = 0; i < samples.rows.size(); ++i)
+    if (is_apart(samples, i, least_step_s, last_s) && in_contact(samples.rows[i].tool, 0.0)) rows.push_back(i);
+  return rows;
 }
 
 Result<Eigen::MatrixXd> features_at(const Samples& samples, const std::vector<FeatureSpec>& features,
                                     const std::vector<std::size_t>& rows, const FitControl& control) {
-  Eigen::MatrixXd values(static_cast<Eigen::Index>(features.size()), static_cast<Eigen::Index>(rows.size()));
-  const std::size_t plans = (features.size() + kMaxFeatures - 1) / kMaxFeatures;
-  std::atomic<bool> stopped = false;
-  parallel_for(static_cast<int>(plans), [&](int plan) {
-    const std::size_t first = static_cast<std::size_t>(plan) * kMaxFeatures;
-    const std::size_t count = std::min(kMaxFeatures, features.size() - first);
-    FeatureFilter filter({features.begin() + static_cast<std::ptrdiff_t>(first),
-                          features.begin() + static_cast<std::ptrdiff_t>(first + count)});
-    Eigen::Index column = 0;
-    for (std::size_t i = 0; i < samples.rows.size() && column < values.cols(); ++i) {
-      if (i % kRowsPerQuestion == 0 && (stopped || (plan == 0 && !control.may_continue()))) {
-        stopped = true;
-        return;
-      }
-      if (samples.begins_recording(i)) filter.reset();
-      const FeatureVector& vector = filter.update(samples.rows[i].tool, samples.rows[i].motion);
-      if (i != rows[static_cast<std::size_t>(column)]) continue;
-      values.col(column++).segment(static_cast<Eigen::Index>(first), static_cast<Eigen::Index>(count)) =
-          Eigen::Map<const Eigen::VectorXd>(vector.values.data(), static_cast<Eigen::Index>(count));
-    }
-  });
-  if (stopped) return interrupted();
-  return values;
+  return at_rows(
+      samples, features, rows, control, 0.0, [](const std::vector<FeatureSpec>& some) { return some.size(); },
+      [](const FeatureFilter& filter) {
+        return std::span(filter.vector().values).first(filter.plan().specs().size());
+      });
+}
+
+Result<Eigen::MatrixXd> memory_at(const Samples& samples, const std::vector<FeatureSpec>& features,
+                                  const std::vector<std::size_t>& rows, const FitControl& control,
+                                  double least_step_s) {
+  return at_rows(samples, features, rows, control, least_step_s, &memory_size,
+                 [](const FeatureFilter& filter) { return filter.plan().memory_of(filter.state()); });
 }
 
 std::vector<RecordingEnds> recording_ends(const Samples& samples, const std::vector<FeatureSpec>& features) {
-  std::vector<RecordingEnds> all;
-  FeatureFilter filter(features);
+  std::vector<std::size_t> first, last;
   for (std::size_t i = 0; i < samples.rows.size(); ++i) {
-    const auto recording = static_cast<std::size_t>(samples.recording[i]);
-    const Sample& row = samples.rows[i];
-    const double recorded_m = row.tool.position_m + samples.surface_m + samples.offsets[recording].offset_m;
-    if (samples.begins_recording(i)) {
-      filter.reset();
-      all.push_back({recorded_m, recorded_m, {}, row.force_N + samples.offsets[recording].force_zero_N});
-    }
-    filter.update(row.tool, row.motion);
-    const bool ends = i + 1 == samples.rows.size() || samples.begins_recording(i + 1);
-    if (!ends) continue;
-    all.back().last_position_m = recorded_m;
-    all.back().memory = filter.plan().memory_of(filter.state());
+    if (samples.begins_recording(i)) first.push_back(i);
+    if (i + 1 == samples.rows.size() || samples.begins_recording(i + 1)) last.push_back(i);
+  }
+  const Eigen::MatrixXd memory = *memory_at(samples, features, last);
+  std::vector<RecordingEnds> all;
+  for (std::size_t k = 0; k < last.size(); ++k) {
+    const RecordingOffset& offset = samples.offsets[k];
+    const auto recorded_m = [&](std::size_t i) {
+      return samples.rows[i].tool.position_m + samples.surface_m + offset.offset_m;
+    };
+    const auto of_end = memory.col(static_cast<Eigen::Index>(k));
+    all.push_back({recorded_m(first[k]),
+                   recorded_m(last[k]),
+                   {of_end.begin(), of_end.end()},
+                   samples.rows[first[k]].force_N + offset.force_zero_N});
   }
   return all;
 }

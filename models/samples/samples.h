@@ -1,23 +1,12 @@
-// Recordings with the estimates from each alone, and the table of samples of a training.
+// Recordings with the estimates from each alone, and the table of samples of a training. models/METHOD.md, Samples, has
+// the equations of free air, force zero, surface, contact, offsets and folds.
 //
-// Surface and force zero of a recording come from it alone; palpate check reports them, and a fit uses them. Free air
-// is a range at the outer end of the positions where the force during loading does not depend on the position; without
-// it, neither is identified. Force zero: the mean force there, without outliers. Surface: the onset of force in touches
-// of a surface at rest that begin in free air: the first, and those after 5 s of air, because a surface that still
-// recovers meets the tool late, by up to a millimetre. During loading,
-//   J(d0) = sum_i (f_i - zero - x_i^n (a (1 - k x_i) + b k x_i))^2,
-//           x_i = max(0, p_i - d0),  a, b >= 0,  n = 1 or 1.5,  k = n / ((n + 1) 3 mm)
-// is minimised over d0: a force law that is convex or concave and rises up to 3 mm.
-//
-// The table has every row of all recordings and is made once. Each estimate of a fit reads its columns;
-// nothing reads the recordings again. models/METHOD.md, Samples, defines contact, offsets and folds.
-//
-// Positions and forces are corrected by the offset of their recording, where that is clear. The
+// Surface and force zero of a recording come from it alone; palpate check reports them, and a fit uses them. The table
+// has the rows of all recordings and is made once. Each estimate of a fit reads its columns; nothing reads the
+// recordings again. Positions and forces are corrected by the offset of their recording, where that is clear. The
 // surface of the table is the median of the clear surfaces, because the next recording is as likely on one side of it
-// as on the other. Without one, recordings that press at every position have theirs outside of all positions, and
-// recordings that begin under a preload where the line through their first forces is 0. Neighbouring samples of a
-// stroke have correlated errors, so a fold never consists of single samples. Thread guarantee: immutable values and
-// pure functions, slow side.
+// as on the other. Neighbouring samples of a stroke have correlated errors, so a fold never consists of single samples.
+// Thread guarantee: immutable values and pure functions, slow side.
 #pragma once
 
 #include <Eigen/Core>
@@ -79,9 +68,6 @@ struct SurfaceEstimate {
   double raw_offset_m = 0.0;
   double standard_error_m = kUnknownError;  // infinite if the surface is not identified
   double force_zero_N = 0.0;                // to be subtracted from force_N; 0 if not significant
-  // The surface at the last touch at rest minus that at the first; the error is infinite with fewer than two.
-  double offset_drift_m = 0.0;
-  double offset_drift_error_m = kUnknownError;
 
   bool identified() const { return std::isfinite(standard_error_m); }
 };
@@ -90,14 +76,19 @@ struct SurfaceEstimate {
 // does not identify the onset. A longer recording at 1 kHz contributes its first seven minutes.
 inline constexpr std::size_t kOnsetRows = 400000;
 inline constexpr double kCoarsestOnset_s = 1.5e-3;
+// The maximum number of rows of a recording that are kept, 100 minutes at 1 kHz and some 350 MB; of a longer one every
+// second, fourth, ...
+inline constexpr std::size_t kMostKeptRows = 6000000;
 
 // A recording with the estimates from it alone.
 struct PreparedRecording {
-  Recording recording;
-  std::uint64_t content_hash = 0;  // engine/recording/recording.h
+  Recording recording;                 // every `stride`-th row
+  std::vector<MotionEstimate> motion;  // at these rows, estimated from all
+  std::size_t recorded_rows = 0, stride = 1;
+  std::uint64_t content_hash = kHashOfNoRows;  // of all rows (engine/recording/recording.h)
   SensorSpec sensor;
   double force_noise_N = 0.0;  // standard deviation
-  std::vector<Sample> rows;    // with their motion; at most kOnsetRows
+  std::vector<Sample> rows;    // of the beginning, with their motion; at most kOnsetRows
   SurfaceEstimate surface;
 };
 
@@ -149,7 +140,6 @@ struct Samples {
   double lowest_force_N = 0.0;       // below 0 if the material is known to pull (adhesion), else 0
   bool surface_outside = false;      // of all positions, each of which has a force: there is no free air
   double rms_velocity_m_per_s = 0.0;
-  std::size_t strokes = 0;
   double sample_s = 0.0;  // mean sampling period
   double longest_recording_s = 0.0;
 
@@ -162,13 +152,17 @@ struct Samples {
 // `recordings`: at least one. `most_rows`: the number of rows to keep. Errors: no sample in contact; interrupted.
 Result<Samples> make_samples(std::vector<PreparedRecordingPointer> recordings, const JndLine& jnd,
                              const FitControl& control = {}, std::size_t most_rows = kMaximumRows);
-// The rows that are at least `least_step_s` after the last one of their recording, with the same ranges. The filters of
+// The rows in contact of those that are at least `least_step_s` after the last one of their recording. The filters of
 // the features are exact for steps of any length.
-Samples thinned(const Samples& samples, double least_step_s);
-// The features at these rows (ascending): one column a row, SI. FeaturePlan advances through all samples, eight
-// features at a time. Errors: interrupted.
+std::vector<std::size_t> contact_apart(const Samples& samples, double least_step_s);
+// The features at these rows (ascending), and the memory of features there, as in RecordingEnds: one column a row, SI.
+// Filters of one to eight features advance through all samples, or those that are apart, each on a thread. Errors:
+// interrupted.
 Result<Eigen::MatrixXd> features_at(const Samples& samples, const std::vector<FeatureSpec>& features,
                                     const std::vector<std::size_t>& rows, const FitControl& control = {});
+Result<Eigen::MatrixXd> memory_at(const Samples& samples, const std::vector<FeatureSpec>& features,
+                                  const std::vector<std::size_t>& rows, const FitControl& control = {},
+                                  double least_step_s = 0.0);
 // Of each recording, in the order of `offsets`, for these features, at most kMaxFeatures.
 std::vector<RecordingEnds> recording_ends(const Samples& samples, const std::vector<FeatureSpec>& features);
 
@@ -197,11 +191,12 @@ struct RecordingFaults {
   bool any() const { return position_dropouts + force_dropouts > 0 || update_step_s > 0.0; }
 };
 
-// Removes the rows from `recording`.
-RecordingFaults remove_faults(Recording& recording);
-// Reads a recording and removes such rows. `faults`: receives what was removed; may be null. Errors: those of
-// read_recording.
-Result<Recording> read_usable_recording(const std::string& path, std::size_t most_rows = kAllRows,
-                                        RecordingFaults* faults = nullptr);
+// Removes the rows from `recording`. `before`: those of the rows before these, to which they are added.
+RecordingFaults remove_faults(Recording& recording, const RecordingFaults& before = {});
+// Reads a recording and removes such rows. Errors: those of read_recording.
+Result<Recording> read_usable_recording(const std::string& path);
+// The same for a training, in blocks of some minutes, of which each is searched for faults by itself, so that memory
+// does not grow with the length. `faults`: receives what was removed.
+Result<PreparedRecordingPointer> read_prepared_recording(const std::string& path, RecordingFaults& faults);
 
 }  // namespace palpate

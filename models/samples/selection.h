@@ -1,12 +1,4 @@
-// The choice among candidates by their errors, in cross-validation and over offsets.
-//
-// Cross-validation. Every candidate predicts the samples of each fold (samples.h) from the other folds. The score of a
-// fold is
-//   l_k = ln(mean_i (e_i / JND_i)^2 + kUnnoticed_jnd^2):
-// the logarithm keeps a fold that is difficult for every candidate from dominating; the constant makes errors below the
-// JND irrelevant. The correction and what the paper leaves open have the lowest score. The shape of the trend is the
-// simplest whose mean score exceeds the lowest by at most two standard errors of the paired difference.
-// Source: Breiman et al. (1984), section 3.4.3; Hastie, Tibshirani & Friedman (2009), section 7.10.
+// The choice among candidates by their errors, in cross-validation (models/METHOD.md, Score) and over offsets.
 //
 // Offsets. `estimate_offset` searches the offset (of a surface, a force lag, ...) with the lowest cost, gives its
 // standard error, and tests whether the data identify it. The cost is a sum over blocks, pieces of the recordings with

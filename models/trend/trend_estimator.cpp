@@ -45,19 +45,28 @@ std::vector<ElasticSpline> elastic_basis(const Samples& samples) {
   return basis;
 }
 
-// One feature for each basis function of a part.
-void add_columns(std::vector<FeatureSpec>& columns, const FeatureSpec& candidate, std::size_t part,
-                 double reference_depth_m) {
-  for (std::size_t k = 0; k < kCurveTerms; ++k) {
-    std::array<double, kCurveTerms> one{};
-    one[k] = 1.0;
-    FeatureSpec& column = columns.emplace_back(FeatureSpec{candidate.kind});
-    column.slowing = candidate.slowing;
-    column.part_count = 1;
-    column.parts[0] = candidate.parts[part];
-    column.parts[0].drive = combined_curve(candidate.kind, one.data(), reference_depth_m);
-    if (candidate.kind == FeatureKind::creep) column.parts[0].threshold_m = reference_depth_m;
+// The drive curve that is one of the basis functions.
+DriveCurve basis_curve(FeatureKind kind, std::size_t k, double reference_depth_m) {
+  std::array<double, kCurveTerms> one{};
+  one[k] = 1.0;
+  return combined_curve(kind, one.data(), reference_depth_m);
+}
+
+// The features whose memory the columns come from: the branches with each basis function as their drive curve, from the
+// last to the first, and the bristles, whose deflection does not depend on it.
+std::vector<FeatureSpec> memory_features(const FeatureList& list, double reference_depth_m) {
+  std::vector<FeatureSpec> features;
+  for (std::size_t k = kCurveTerms; k-- > 0;) {
+    for (FeatureSpec spec : list.features) {
+      if (!is_branch(spec.kind) && (k > 0 || !is_bristle(spec.kind))) continue;
+      for (FeaturePart& part : spec.parts) {
+        part.drive = basis_curve(spec.kind, k, reference_depth_m);
+        if (spec.kind == FeatureKind::creep) part.threshold_m = reference_depth_m;
+      }
+      features.push_back(spec);
+    }
   }
+  return features;
 }
 
 Trend trend_from(const TrendColumns& columns, const Eigen::VectorXd& x) {
@@ -181,25 +190,34 @@ DriveCurve combined_curve(FeatureKind kind, const double* weights, double refere
 }
 
 Result<TrendColumns> TrendColumns::make(const Samples& samples, FeatureList list, std::size_t most_rows,
-                                        const FitControl& control) {
+                                        const FitControl& control, double least_step_s) {
   TrendColumns made;
   made.samples_ = &samples;
-  made.stride_ = (samples.contact.size() + most_rows - 1) / most_rows;
-  for (std::size_t i = 0; i < samples.contact.size(); i += made.stride_) made.rows_.push_back(samples.contact[i]);
+  const std::vector<std::size_t> contact = contact_apart(samples, least_step_s);
+  made.stride_ = (contact.size() + most_rows - 1) / most_rows;
+  for (std::size_t i = 0; i < contact.size(); i += made.stride_) made.rows_.push_back(contact[i]);
   const std::vector<ElasticSpline> elastic = elastic_basis(samples);
-  std::vector<FeatureSpec> memory;  // the columns of branches and bristles
-  Eigen::Index columns = 0;
+  constexpr auto kBasis = static_cast<Eigen::Index>(kCurveTerms);
+  Eigen::Index columns = 0, branches = 0;
   for (const FeatureSpec& spec : list.features) {
-    for (std::size_t p = 0; p < spec.part_count; ++p) add_columns(memory, spec, p, samples.depth_m);
     const std::size_t count = spec.kind == FeatureKind::depth      ? elastic.size()
                               : spec.kind == FeatureKind::velocity ? 2 * kViscosityCoefficients
                                                                    : kCurveTerms * spec.part_count;
     ColumnList& of_feature = made.feature_columns_.emplace_back(count);
     std::iota(of_feature.begin(), of_feature.end(), columns);
     columns += static_cast<Eigen::Index>(count);
+    if (is_branch(spec.kind)) branches += static_cast<Eigen::Index>(spec.part_count);
   }
-  const auto of_memory = features_at(samples, memory, made.rows_, control);
-  if (!of_memory) return of_memory.error();
+  const std::vector<FeatureSpec> features = memory_features(list, samples.depth_m);
+  const auto memory = memory_at(samples, features, made.rows_, control, least_step_s);
+  if (!memory) return memory.error();
+  std::vector<double> thresholds_m;  // of the bristles
+  for (const FeatureSpec& spec : features)
+    for (std::size_t p = 0; is_bristle(spec.kind) && p < spec.part_count; ++p)
+      thresholds_m.push_back(spec.parts[p].threshold_m);
+  std::vector<DriveCurve> frictions;
+  for (std::size_t k = 0; k < kCurveTerms; ++k)
+    frictions.push_back(basis_curve(FeatureKind::stops, k, samples.depth_m));
   const bool viscous = has_kind(list.features, FeatureKind::velocity);
   made.list_ = std::move(list);
   made.terms_.resize(static_cast<Eigen::Index>(made.count()), columns);
@@ -214,7 +232,14 @@ Result<TrendColumns> TrendColumns::make(const Samples& samples, FeatureList list
       for (const double v : {velocity_m_per_s, trend_equation::thinned(velocity_m_per_s, samples.rms_velocity_m_per_s)})
         for (const auto& power : kViscousBasis) *to++ = v * trend_equation::quadratic(power.data(), u);
     }
-    std::copy(of_memory->col(row).begin(), of_memory->col(row).end(), to);
+    const auto values = memory->col(row);
+    for (Eigen::Index branch = 0; branch < branches; ++branch)
+      for (Eigen::Index k = kBasis; k-- > 0;) *to++ = values(k * branches + branch);
+    auto bend_m = values.begin() + kBasis * branches;
+    for (const double threshold_m : thresholds_m) {
+      for (const DriveCurve& friction : frictions) *to++ = friction.at(depth_m) * *bend_m * (1.0 / threshold_m);
+      ++bend_m;
+    }
   }
   return made;
 }
@@ -252,6 +277,8 @@ Eigen::MatrixXd values_of(const TrendColumns& columns, const Eigen::MatrixXd& so
   return values;
 }
 
+// The filters are exact for steps of any length, and a hand moves little in 4 ms.
+constexpr double kSearchStep_s = 3.9e-3;
 // At the greatest depth a relaxation time is exp(slowing) times that at the surface: 0.2 to 20. Simplest first.
 constexpr std::array kSlowings{0.0, 0.75, -0.75, 1.5, -1.5, 2.25, 3.0};
 
@@ -409,11 +436,10 @@ CrossValidated TrendEstimator::cross_validate(const ColumnList& columns, double 
 Result<FeatureList> select_slowing(const Samples& samples, const JndLine& jnd, const FeatureList& list,
                                    std::vector<PartGain>& gains, const FitControl& control) {
   if (!has_kind(list.features, FeatureKind::maxwell_spectrum)) return list;
-  // The filters are exact for steps of any length, and a hand moves little in 4 ms.
-  const Samples few = thinned(samples, 3.9e-3);
   std::vector<FoldErrors> errors;
   for (const double slowing : kSlowings) {
-    const auto columns = TrendColumns::make(few, with_slowing(shortened(list), slowing), kSearchRows, control);
+    const auto columns =
+        TrendColumns::make(samples, with_slowing(shortened(list), slowing), kSearchRows, control, kSearchStep_s);
     if (!columns) return columns.error();
     const TrendEstimator estimator(*columns, jnd, TrendEstimator::kFirstSmoothness);
     errors.push_back(estimator.cross_validate(estimator.all_columns()).errors);

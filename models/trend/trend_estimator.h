@@ -1,15 +1,7 @@
-// The non-negative regression of the trend (models/model/fitted_model.h; models/METHOD.md, Trend).
-//
-//   minimise sum_i s_i^2 (f_i - sum_j c_j t_ij)^2 + alpha^2 sum_j g_jj c_j^2
-//            + lambda S n sum_k (c_k+1 - c_k)^2,       all c_j >= 0,
-//   g_jj = sum_i s_i^2 t_ij^2,  S = sum_i s_i^2,  n = kElasticPieces
-//
-// t_ij: term j at row i, f_i: force, k: index of an elastic term. s_i: 1 / JND(f_i) times the weight
-// of a Cauchy likelihood; a sample without measured force counts only while the trend there is positive. Both are
-// iterated within the training rows of each fold. The elastic response is a P-spline (Eilers & Marx 1996). alpha is the
-// relative error of all other columns, of which repeated measurements agree to about a tenth (errors in variables;
-// Golub & Van Loan 1980); columns that the recording cannot separate then share their effect. Thread guarantee: slow
-// side, pure.
+// The non-negative regression of the trend: its columns, the weights s_i of its rows and its equation are in
+// models/METHOD.md, Trend. The elastic response is a P-spline (Eilers & Marx 1996). alpha is the relative error of all
+// other columns, of which repeated measurements agree to about a tenth (errors in variables; Golub & Van Loan 1980);
+// columns that the recording cannot separate then share their effect. Thread guarantee: slow side, pure.
 #pragma once
 
 #include <Eigen/Core>
@@ -27,17 +19,6 @@
 #include "models/samples/selection.h"
 
 namespace palpate {
-
-// The candidate features of a trend, the columns of its regression, and the trend made from the weights.
-//
-// A row holds the basis functions of the trend at one sample in contact, with u = depth / reference depth:
-//   depth             int_0^u of the quadratic B-splines (models/model/fitted_model.h): the elastic response; and
-//                     -1 where a material without free air pulls (Samples::surface_outside)
-//   velocity          v B_k,2(min(u, 1)), k = 0..2, then the same with v / (1 + |v| / v_0): the viscosity
-//   maxwell_spectrum  for each relaxation time a branch driven by int_0^u B_k,2, k = 0..2
-//   stops             for each threshold r, s / r times 1 - (1 - u)^4, u and u^2
-//   creep             for each time, q / r times the same; r is the greatest depth
-// Thread guarantee: slow side.
 
 // The number of basis functions of depth for each branch, stop and creeping bristle.
 inline constexpr std::size_t kCurveTerms = 3;
@@ -78,16 +59,17 @@ class TrendColumns {
  public:
   using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-  // At most `most_rows` evenly spaced samples in contact. `samples` outlives this. Errors: interrupted.
+  // At most `most_rows` evenly spaced samples in contact, of those at least `least_step_s` apart. `samples` outlives
+  // this. Errors: interrupted.
   static Result<TrendColumns> make(const Samples& samples, FeatureList list, std::size_t most_rows,
-                                   const FitControl& control = {});
+                                   const FitControl& control = {}, double least_step_s = 0.0);
 
   const Samples& samples() const { return *samples_; }
   const FeatureList& list() const { return list_; }
   // The samples of the rows.
   const std::vector<std::size_t>& rows() const { return rows_; }
   std::size_t count() const { return rows_.size(); }
-  // Row i is sample stride() * i of those in contact.
+  // Row i is sample stride() * i of those in contact that are far enough apart.
   std::size_t stride() const { return stride_; }
   double force_N(std::size_t row) const { return samples_->rows[rows_[row]].force_N; }
   double depth_m(std::size_t row) const { return samples_->rows[rows_[row]].motion.position_m; }

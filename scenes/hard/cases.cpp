@@ -90,7 +90,6 @@ SamplesPointer samples_of(const SiteSet& set) {
   }
   samples.folds = kFolds;
   samples.units = kFolds;
-  samples.strokes = kFolds;
   samples.offsets.emplace_back().name = "sites";
   samples.recorded_rows = static_cast<std::size_t>(count);
   samples.force_noise_N = kNoise_N * set.force_unit;

@@ -108,13 +108,8 @@ void SessionRecorder::write(const RecordedSample& sample) {
     ++without_force_;
     return;
   }
-  const double gaps_s = time_.gaps_s();
   const std::optional<double> time_s = time_.file_time_s(sample.tool.time_s, restart_pending_);
   restart_pending_ = false;
-  if (time_.gaps_s() > gaps_s) {
-    writer_->note("the time of the device began again at time_s " + shortest(*time_s) + ": the " +
-                  general(kStreamGap_s, 3) + " s before it were not measured");
-  }
   if (!time_s) {
     ++unusable_;
     return;
@@ -137,7 +132,10 @@ Notice SessionRecorder::finish() {
   return {"recorded " + std::to_string(writer_->rows()) + " rows (" + fixed(time_.last_s() - time_.gaps_s(), 1) +
               " s) into " + request_.path + counted(dropped, "were lost because the disk was too slow") +
               counted(unusable_, "that the loop could not use were left out") +
-              counted(without_force_, "without a force were left out"),
+              counted(without_force_, "without a force were left out") +
+              (time_.gaps_s() > 0.0 ? "; the time of the device began again, after gaps of " +
+                                          general(time_.gaps_s(), 3) + " s in all that were not measured"
+                                    : ""),
           dropped > 0};
 }
 

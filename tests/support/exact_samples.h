@@ -25,14 +25,15 @@ Samples exact_samples(std::size_t rows, double depth_m, const RowAt& row_at) {
   samples.offsets.resize(1);
   samples.depth_m = depth_m;
   double squares = 0.0;
+  int strokes = 0;
   for (std::size_t i = 0; i < rows; ++i) {
     const ExactRow row = row_at(i);
     const bool contact = row.position_m > 0.0;
-    if (contact && (i == 0 || !(samples.rows.back().tool.position_m > 0.0))) ++samples.strokes;
+    if (contact && (i == 0 || !(samples.rows.back().tool.position_m > 0.0))) ++strokes;
     samples.rows.push_back(
         {{row.time_s, row.position_m, 0.0, 0.0}, {row.position_m, row.velocity_m_per_s}, row.force_N});
     samples.recording.push_back(0);
-    samples.stroke.push_back(static_cast<int>(samples.strokes));
+    samples.stroke.push_back(strokes);
     samples.fold.push_back(row.fold);
     samples.folds = std::max(samples.folds, row.fold + 1);
     if (!contact) continue;

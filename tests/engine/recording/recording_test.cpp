@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <clocale>
 #include <cstring>
 #include <filesystem>
@@ -21,8 +22,15 @@ using test::TemporaryFolder;
 // Reads `text` as a file; fails the test if it is refused.
 Recording accepted(const std::string& text) {
   const TemporaryFolder folder;
-  auto recording = read_recording(folder.with_file("rec.csv", text));
+  const std::string path = folder.with_file("rec.csv", text);
+  auto recording = read_recording(path);
   EXPECT_TRUE(recording.ok()) << recording.error().message;
+  std::vector<double> times_s;  // in blocks
+  const auto use = [&](const Recording& block) {
+    for (const RecordingRow& row : block.rows) times_s.push_back(row.time_s);
+  };
+  EXPECT_TRUE(read_recording_blocks(path, 5, use).ok());
+  EXPECT_TRUE(std::ranges::equal(times_s, recording->rows, {}, {}, &RecordingRow::time_s));
   return recording ? *recording : Recording{};
 }
 
@@ -41,6 +49,7 @@ TEST(Recording, NamesThePlaceOfAFaultAndSaysWhatToDo) {
     const auto recording = read_recording(path);
     ASSERT_FALSE(recording.ok());
     const std::string& message = recording.error().message;
+    EXPECT_EQ(read_recording_blocks(path, 5, [](const Recording&) {}).error().message, message);
     EXPECT_TRUE(test::has_parts(message, {path + ":" + broken.place + ": found ", ", expected ", "; "}));
     EXPECT_TRUE(test::has_parts(message, broken.parts));
     EXPECT_EQ(utf8_bytes(message), message.size());
@@ -259,23 +268,6 @@ TEST(RecordingWriter, ThePartOfAKilledProgramIsKept) {
   EXPECT_EQ(writer_in_part(folder, false).error().message,
             part + " is left from a program that was killed; rename it to keep it, or delete it");
   EXPECT_TRUE(writer_in_part(folder, true).ok());
-}
-
-TEST(RecordingWriter, WritesNotesAboveTheRows) {
-  const test::TemporaryFolder folder;
-  auto writer = test::must(writer_in_part(folder, false));
-  for (int i = 0; i < 2000; ++i) {
-    ASSERT_TRUE(writer.add({1e-3 * i, 0.0, 0.0, 0.0, 0.0}));
-    if (i % 80 == 40) writer.note("note " + std::to_string(i));
-    if (i == 1500) {
-      ASSERT_TRUE(writer.flush());
-    }
-  }
-  ASSERT_TRUE(writer.commit());
-  EXPECT_TRUE(test::has_parts(test::read_text(folder.file("a.csv")),
-                              {"# note 40\n# note 120\n", "# 5 more such notes\n# first\ntime_s,"}));
-  EXPECT_EQ(test::must(read_recording(folder.file("a.csv"))).rows.size(), 2000u);
-  EXPECT_EQ(folder.entries(), std::vector<std::string>{"a.csv"});
 }
 
 }  // namespace

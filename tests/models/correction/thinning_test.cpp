@@ -77,7 +77,7 @@ TEST(Thinning, ASiteHasSamplesOfOneFoldOnly) {
     const bool first_fold = i / 500 % 5 == 0;
     return std::pair{position_m, position_m > 0.0 ? (first_fold ? 2.0 : 1.0) : 0.0};
   }));
-  ASSERT_EQ(samples.strokes, 20u);
+  ASSERT_EQ(samples.stroke.back(), 20);
   const Thinned thinned = thinned_by(Thinning::coverage, samples, test::position_features());
   for (Eigen::Index i = 0; i < thinned.sites.count(); ++i) {
     const bool first_fold = thinned.sites.fold[static_cast<std::size_t>(i)] == 0;

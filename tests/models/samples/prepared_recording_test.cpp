@@ -92,6 +92,20 @@ TEST(SurfaceEstimate, IsFoundLateInALongRecordingOfManyRows) {
   }
 }
 
+TEST(PreparedRecording, OfTooManyRowsHasEverySecondWithTheMotionFromAll) {
+  Recording recording;
+  for (std::size_t i = 0; i <= kMostKeptRows; ++i)
+    recording.rows.push_back({1e-3 * static_cast<double>(i), 1e-3 * std::sin(1e-3 * static_cast<double>(i)), 0.0});
+  const std::vector<Sample> rows = thinned_rows(recording, kMostKeptRows);
+  const auto prepared = prepare_recording(std::move(recording));
+  EXPECT_EQ(prepared->recorded_rows, kMostKeptRows + 1);
+  ASSERT_EQ(prepared->recording.rows.size(), rows.size());
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    ASSERT_EQ(prepared->recording.rows[i].time_s, rows[i].tool.time_s);
+    ASSERT_EQ(prepared->motion[i].velocity_m_per_s, rows[i].motion.velocity_m_per_s);
+  }
+}
+
 // The inertial force of the tool must not be taken for contact.
 TEST(SurfaceEstimate, TellsInertiaFromContact) {
   Recording recording = rig("silicone", 2);
@@ -233,7 +247,7 @@ TEST(RecordingFaults, BlamesNoRealRecording) {
     for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
       if (entry.path().extension() != ".csv") continue;
       RecordingFaults faults;
-      ASSERT_TRUE(read_usable_recording(entry.path().string(), kAllRows, &faults).ok()) << entry.path();
+      ASSERT_TRUE(read_prepared_recording(entry.path().string(), faults).ok()) << entry.path();
       EXPECT_FALSE(faults.any()) << entry.path();
     }
   }

@@ -63,7 +63,7 @@ TEST(Samples, TheSurfaceOfOneRecordingIsThatOfTheTable) {
     EXPECT_NEAR(samples.surface_m, surface_m, kSurface_m);
     EXPECT_EQ(samples.offsets[0].offset_m, 0.0);
     EXPECT_TRUE(std::isfinite(samples.offsets[0].standard_error_m));
-    EXPECT_EQ(samples.strokes, 4u) << surface_m;
+    EXPECT_EQ(samples.stroke.back(), 4) << surface_m;
     expect_depths_and_forces(samples);
   }
 }
@@ -76,7 +76,7 @@ TEST(Samples, OneRecordingOfThreeIsMoved) {
     EXPECT_EQ(samples.offsets[0].offset_m, 0.0);
     EXPECT_NEAR(samples.offsets[1].offset_m, surface_m, kSurface_m);
     EXPECT_EQ(samples.offsets[2].offset_m, 0.0);
-    EXPECT_EQ(samples.strokes, 12u);
+    EXPECT_EQ(samples.stroke.back(), 12);
     expect_depths_and_forces(samples);
   }
 }
