@@ -37,6 +37,8 @@ constexpr double kMonotonicShare = 0.1;
 constexpr double kHoldOfStroke = 0.5;
 // Ten rows in a period of the fastest motion of a hand, 10 Hz.
 constexpr double kSlowRate_Hz = 100.0;
+// At 650 N/m this changes the force by the JND at 0 N.
+constexpr double kSurfaceDrift_m = 0.1e-3;
 // One to the full depth in each of the three bands of speed, and two shallower ones.
 constexpr int kFewStrokes = 5;
 // A recording with fewer rows is an attempt, and not that of a broken sensor.
@@ -320,6 +322,12 @@ class Checker {
     if (surface_.air.found && !(surface_.air.tool_mass_kg > 0.0) && pull_N > certain_force_N(noise_N_)) {
       add("adhesion", Severity::note, pull_N,
           words("the material pulls the tool with up to %.3g N: a fitted model renders this adhesion", pull_N), "");
+    }
+    if (std::isfinite(surface_.offset_drift_error_m) &&
+        std::abs(surface_.offset_drift_m) > std::max(kSurfaceDrift_m, 3.0 * surface_.offset_drift_error_m)) {
+      add("surface_drift", Severity::warning, surface_.offset_drift_m,
+          words("the surface moves by %+.3g mm between the first touch and the last", 1e3 * surface_.offset_drift_m),
+          "the specimen creeps or slips: fasten it, and let it recover between strokes");
     }
     if (measures_.contact_rows == 0) {  // as recorded, the surface at 0
       add("no_contact", Severity::fatal, measures_.highest_position_m,

@@ -263,6 +263,17 @@ Onset find_onset(const std::vector<Sample>& rows, const std::vector<Touch>& touc
   return onset;
 }
 
+void estimate_drift(SurfaceEstimate& estimate, const std::vector<Sample>& rows, const std::vector<Touch>& touches,
+                    double zero_N, double force_noise_N) {
+  if (touches.size() < 2) return;
+  const Onset first = find_onset(rows, {touches.front()}, zero_N, force_noise_N);
+  const Onset last = find_onset(rows, {touches.back()}, zero_N, force_noise_N);
+  estimate.offset_drift_error_m =
+      std::hypot(std::hypot(first.standard_error_m, last.standard_error_m), std::hypot(first.misfit_m, last.misfit_m));
+  const double drift_m = last.at_m - first.at_m;
+  if (std::abs(drift_m) > kSignificantErrors * estimate.offset_drift_error_m) estimate.offset_drift_m = drift_m;
+}
+
 // `recorded`: rows of a recording, in time order.
 SurfaceEstimate estimate_surface(const std::vector<Sample>& recorded, double force_noise_N) {
   SurfaceEstimate estimate;
@@ -293,6 +304,7 @@ SurfaceEstimate estimate_surface(const std::vector<Sample>& recorded, double for
   estimate.standard_error_m = onset.standard_error_m;
   const bool significant = std::abs(onset.at_m) > std::max(kLeastOffset_m, kSignificantErrors * onset.standard_error_m);
   if (significant) estimate.offset_m = onset.at_m;
+  estimate_drift(estimate, rows, touches, air.zero_N, force_noise_N);
   return estimate;
 }
 

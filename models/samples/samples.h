@@ -68,6 +68,9 @@ struct SurfaceEstimate {
   double raw_offset_m = 0.0;
   double standard_error_m = kUnknownError;  // infinite if the surface is not identified
   double force_zero_N = 0.0;                // to be subtracted from force_N; 0 if not significant
+  // The surface at the last touch at rest minus that at the first; the error is infinite with fewer than two.
+  double offset_drift_m = 0.0;
+  double offset_drift_error_m = kUnknownError;
 
   bool identified() const { return std::isfinite(standard_error_m); }
 };

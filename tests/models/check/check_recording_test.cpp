@@ -150,6 +150,24 @@ TEST(CheckRecording, FindsEachFaultWhichItsAdviceRemoves) {
   }
 }
 
+TEST(CheckRecording, TellsThatTheSpecimenSlips) {
+  const auto pressed_again = [](double slip_m) {
+    Recording recording = press_and_hold(8.0);
+    const Recording first = recording;
+    for (int i = 0; i < 600; ++i) recording.rows.push_back({.time_s = 12.0 + 0.01 * i, .position_m = -1e-3});
+    for (RecordingRow row : first.rows) {
+      row.time_s += 18.0, row.position_m += slip_m;
+      recording.rows.push_back(row);
+    }
+    return checked(recording, CheckRequest{});
+  };
+  EXPECT_EQ(find(pressed_again(0.0), "surface_drift"), nullptr);
+  const RecordingCheck check = pressed_again(0.3e-3);
+  const Finding* const finding = find(check, "surface_drift");
+  ASSERT_NE(finding, nullptr) << all_of(check);
+  EXPECT_NEAR(finding->value, 0.3e-3, 0.03e-3);
+}
+
 TEST(CheckRecording, TellsTheMassThatTheForceSensorCarries) {
   Recording heavy = silicone();
   each(heavy, [](RecordingRow& row) { row.force_N += 0.06 * row.acceleration_m_per_s2; });
