@@ -12,7 +12,6 @@
 #include <limits>
 #include <map>
 #include <memory>
-#include <ranges>
 #include <utility>
 #include <vector>
 
@@ -85,8 +84,13 @@ class ForceHistory {
   }
   // Index of the first point at `loop_time_s` or later; size() if there is none. O(log size).
   std::size_t first_at(double loop_time_s) const noexcept {
-    return *std::ranges::partition_point(std::views::iota(std::size_t{0}, size_),
-                                         [&](std::size_t i) { return (*this)[i].loop_time_s < loop_time_s; });
+    std::size_t from = 0;
+    for (std::size_t to = size_; from < to;) {
+      const std::size_t middle = from + (to - from) / 2;
+      const bool before = (*this)[middle].loop_time_s < loop_time_s;
+      (before ? from : to) = before ? middle + 1 : middle;
+    }
+    return from;
   }
   // The last point up to `loop_time_s`; null: there is none.
   const HistoryPoint* last_until(double loop_time_s) const noexcept {
