@@ -1,4 +1,3 @@
-// Checks that the documents of the file formats agree with the files.
 #include <gtest/gtest.h>
 
 #include <regex>

@@ -252,13 +252,11 @@ TEST(ImportTable, OtherwiseTheReadingsThatRemainAreCommands) {
            "--rate 100 --rows 2-61  # all as one recording"},
       {"Time (s),Position (m),Force (N)\ns,mm,N\n" + rows_of(0, kRows), "",
        "rig.txt:1: found two units of the position \"Position (m)\", m and mm, expected one; correct the header, or "
-       "give "
-       "the unit of the numbers" +
+       "give the unit of the numbers" +
            command + "--units m  # the first" + command + "--units mm  # the second"},
       {table_of("t_s,x_mm,force_N (mN)", "%t,%x,%g"), "",
        "rig.txt:1: found two units of the force \"force_N (mN)\", mN and N, expected one; correct the header, or give "
-       "the "
-       "unit of the numbers" +
+       "the unit of the numbers" +
            command + "--units mN  # the first" + command + "--units N  # the second"},
       {table_of("t_s,x_mm,a (g)", "%t,%x,%f"), "",
        "rig.txt: found no column that is clearly the force, expected one column for each of time, position and force; "
@@ -268,8 +266,7 @@ TEST(ImportTable, OtherwiseTheReadingsThatRemainAreCommands) {
                     "140400."),
        "",
        "rig.txt:102: found a time 40.01 s after that of the row above \"Time (s)\" at a multiple of 100 s, as where "
-       "hours, "
-       "minutes and seconds are written as one number; write seconds, or 14:03:22.010"},
+       "hours, minutes and seconds are written as one number; write seconds, or 14:03:22.010"},
       {kHeader + "\nScale,0.5,2.5\n" + rows_of(0, kRows), "",
        "rig.txt:2: found numbers in a line between the names of the columns and the rows, expected none, because they "
        "may scale the columns; remove the line, or leave it out" +

@@ -20,8 +20,6 @@
 namespace palpate {
 namespace {
 
-// Each fault of a recording is found, without false alarms on good recordings.
-
 const CheckRequest kSilicone{JndLine{}, true};
 
 Recording silicone() {
@@ -153,9 +151,8 @@ TEST(CheckRecording, FindsEachFaultWhichItsAdviceRemoves) {
 TEST(CheckRecording, TellsThatTheSpecimenSlips) {
   const auto pressed_again = [](double slip_m) {
     Recording recording = press_and_hold(8.0);
-    const Recording first = recording;
     for (int i = 0; i < 600; ++i) recording.rows.push_back({.time_s = 12.0 + 0.01 * i, .position_m = -1e-3});
-    for (RecordingRow row : first.rows) {
+    for (RecordingRow row : press_and_hold(8.0).rows) {
       row.time_s += 18.0, row.position_m += slip_m;
       recording.rows.push_back(row);
     }
@@ -346,13 +343,12 @@ OffsetEstimate lag_of(const std::string& material, double late_s) {
   return find_force_lag(late_forces(thinned_rows(recording, kAllRows), late_s), noise_N);
 }
 
-// The tolerance is 2 ms.
 TEST(ForceLag, FindsALateForce) {
   for (const auto& [material, late_s] :
        {std::pair{"silicone", 8e-3}, std::pair{"foam", 30e-3}, std::pair{"stiff", -10e-3}}) {
     const OffsetEstimate found = lag_of(material, late_s);
     EXPECT_TRUE(found.identified) << material;
-    EXPECT_NEAR(found.at, late_s, 2e-3) << material;
+    EXPECT_NEAR(found.at, late_s, 2e-3) << material;  // s
   }
 }
 
@@ -372,8 +368,7 @@ TEST(ForceLag, IsNamedWhereThePressesJump) {
       const double late_m = std::max(0.0, depth_m(time_s - late_s));
       slow_m += 0.002 / 0.4 * (late_m - slow_m);
       const double force_N = late_m > 0.0 ? 900.0 * late_m + 4e4 * late_m * late_m + 500.0 * (late_m - slow_m) : 0.0;
-      recording.rows.push_back(
-          {.time_s = time_s, .position_m = depth_m(time_s), .force_N = force_N + 0.004 * std::sin(1.7 * i * i)});
+      recording.rows.push_back({time_s, depth_m(time_s), force_N + 0.004 * std::sin(1.7 * i * i)});
     }
     return checked(recording, CheckRequest{});
   };
