@@ -5,7 +5,6 @@
 #include <bit>
 #include <charconv>
 #include <filesystem>
-#include <memory>
 #include <string_view>
 #include <tuple>
 #include <utility>

@@ -1,6 +1,5 @@
 #include "models/correction/algebra.h"
 
-#include <algorithm>
 #include <vector>
 
 #include "models/correction/methods.h"

@@ -10,7 +10,6 @@
 #include <Eigen/Core>
 #include <nlohmann/json_fwd.hpp>
 
-#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>

@@ -12,7 +12,6 @@
 #include <hwy/highway.h>
 
 #include <algorithm>
-#include <limits>
 #include <utility>
 
 HWY_BEFORE_NAMESPACE();

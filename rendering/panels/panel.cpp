@@ -1,7 +1,6 @@
 #include "rendering/panels/panel.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <vector>
 

@@ -2,7 +2,6 @@
 
 #include <epoxy/gl.h>
 
-#include <cstddef>
 #include <cstdint>
 #include <glm/gtc/type_ptr.hpp>
 #include <initializer_list>

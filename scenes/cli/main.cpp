@@ -6,7 +6,6 @@
 #include <iostream>
 #include <new>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #if defined(__GLIBC__)

@@ -1,7 +1,6 @@
 #include "scenes/live/session_models.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 #include "engine/base/text.h"

@@ -4,7 +4,6 @@
 // The same fit gives the same bytes: no time is stored. Thread guarantee: slow side only (allocates, does I/O).
 #pragma once
 
-#include <cstdint>
 #include <memory>
 #include <string>
 #include <string_view>
