@@ -169,9 +169,8 @@ Status run_demo(Arguments& arguments) {
 // The first option that is not known, with the nearest one; empty if all are known.
 std::string unknown_option(const CLI::App& app, int argc, char** argv) {
   std::vector<std::string> known;
-  for (const CLI::Option* option : app.get_options()) {
+  for (const CLI::Option* option : app.get_options())
     known.insert(known.end(), option->get_lnames().begin(), option->get_lnames().end());
-  }
   for (int i = 1; i < argc; ++i) {
     const std::string word = argv[i];
     const std::string name = word.rfind("--", 0) == 0 ? word.substr(2, word.find('=') - 2) : "";

@@ -55,9 +55,8 @@ void join_rows(Mesh& mesh, std::size_t row, bool closed) {
   const std::uint32_t inner = outer - points;
   for (std::uint32_t i = 0; i + (closed ? 0 : 1) < points; ++i) {
     const std::uint32_t next = (i + 1) % points;
-    for (const std::uint32_t index : {inner + i, inner + next, outer + i, outer + i, inner + next, outer + next}) {
+    for (const std::uint32_t index : {inner + i, inner + next, outer + i, outer + i, inner + next, outer + next})
       mesh.triangles.push_back(index);
-    }
   }
 }
 
