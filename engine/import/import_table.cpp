@@ -20,7 +20,8 @@ constexpr std::size_t kCountedRows = 10;
 constexpr std::size_t kMostReadings = 12;
 // A time that goes back by more steps begins another recording.
 constexpr double kSwappedSteps = 3.0;
-// Rows alternate between series where those that are so many apart differ by so much less than neighbours.
+// Rows alternate between series where those that are so many apart differ by so much less than neighbours. In one
+// series the ratio is 1 for independent noise and less for a smooth motion; only a periodic disturbance may exceed it.
 constexpr std::size_t kMostSeries = 8;
 constexpr double kSeriesDifference = 3.0;
 // With more unreadable rows than one in so many, or more cells that have digits and are no numbers, leaving rows out is
@@ -389,7 +390,7 @@ class Importer {
         }
         if (neighbours > kSeriesDifference * series)
           return refuse(apart, the_role(role) + ", which is nearer to that " + std::to_string(apart) +
-                                   " rows above than to that of the row above");
+                                   " rows above than to that of the row above (or a disturbance has this period)");
       }
     }
     return {};

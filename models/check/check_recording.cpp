@@ -203,8 +203,8 @@ class Checker {
     if (prepared_.stride > 1) {
       const auto every = static_cast<double>(prepared_.stride);
       add("thinned", Severity::note, every,
-          words("one of %.0f of its %zu rows is used, with the motion from all", every, prepared_.recorded_rows),
-          "as a test, split it to replay all of it");
+          words("1 in %.0f of %zu rows is used; the motion is estimated from all", every, prepared_.recorded_rows),
+          "split the recording to replay every row");
     }
     if (measures_.largest_step_s <= std::max(kGap_s, kGapSteps * measures_.median_step_s)) return;
     add("gap", Severity::warning, measures_.largest_step_s,

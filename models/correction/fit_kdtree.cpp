@@ -24,8 +24,9 @@
 namespace palpate {
 namespace {
 
-using Leaf = std::vector<Eigen::Index>;       // sites
-constexpr std::size_t kLeavesOfASplit = 100;  // the paper's largest number of centres
+using Leaf = std::vector<Eigen::Index>;  // sites
+// Up to the default number of centres one leaf is split between two fits, as in the paper.
+constexpr std::size_t kLeavesOfASplit = 100;
 
 Eigen::VectorXd barycentre(const Eigen::MatrixXd& points, const Leaf& leaf) {
   Eigen::VectorXd sum = Eigen::VectorXd::Zero(points.rows());

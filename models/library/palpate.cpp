@@ -98,7 +98,7 @@ struct palpate_limiter {
   palpate::SampleRate calls, samples;
   double sample_age_s = std::numeric_limits<double>::infinity();
   palpate::library::StepCheck steps;
-  bool told = false;  // by palpate_limiter_acted, of the sample to come and of the last one
+  bool measures_lag = false;  // from the times of palpate_limiter_acted: for the sample to come, and for the last one
   double acted_from_s = palpate::library::kNone, acted_before_s = palpate::library::kNone;
   unsigned flags = 0;  // beside those of `limiter`
 };
@@ -236,7 +236,7 @@ double render(palpate_limiter& limiter, palpate_stream& stream, double given_s) 
   const ForceGuard::Timing timing{step_s, tick_s, limiter.lag_s};
   if (stream.accepted) {
     if (!first && limiter.sample_age_s > 0.0) limiter.samples.add(std::min(limiter.sample_age_s, kPause_s));
-    limiter.guard.acted(limiter.told ? age_at(limiter, tick.time_s) : ForceAge{}, tick_s);
+    limiter.guard.acted(limiter.measures_lag ? age_at(limiter, tick.time_s) : ForceAge{}, tick_s);
     limiter.sample_age_s = 0.0;
   }
   const bool in_contact = stream.tick().features_of(0).in_contact && !std::exchange(stream.restarted, false);
@@ -445,7 +445,7 @@ int palpate_limiter_set_lag(palpate_limiter* limiter, double lag_s) {
 
 void palpate_limiter_acted(palpate_limiter* limiter, double sampled_s) {
   if (limiter == nullptr) return;
-  limiter->told = true;
+  limiter->measures_lag = true;
   limiter->acted_from_s = sampled_s;
 }
 

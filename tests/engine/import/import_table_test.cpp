@@ -276,7 +276,8 @@ TEST(ImportTable, OtherwiseTheReadingsThatRemainAreCommands) {
            command + "--units s  # the times of the clock"},
       {table_of("src,x_mm,F_N", "1,%x,%f\n2,%f,%x"), "--rate 100",
        "rig.txt: found rows of 2 series that alternate, by the position \"x_mm\", which is nearer to that 2 rows above "
-       "than to that of the row above, expected one; write the rows of each into a file of its own"},
+       "than to that of the row above (or a disturbance has this period), expected one; write the rows of each into a "
+       "file of its own"},
       {table_of("Force,Unit,x (mm),t (s)", "%g,mN,%x,%t"), "--units N",
        "rig.txt: found the unit mN in the rows of the force \"Force\", expected N, as --units says; correct the one "
        "that is wrong"},

@@ -152,10 +152,8 @@ TEST(CheckRecording, TellsThatTheSpecimenSlips) {
   const auto pressed_again = [](double slip_m) {
     Recording recording = press_and_hold(8.0);
     for (int i = 0; i < 600; ++i) recording.rows.push_back({.time_s = 12.0 + 0.01 * i, .position_m = -1e-3});
-    for (RecordingRow row : press_and_hold(8.0).rows) {
-      row.time_s += 18.0, row.position_m += slip_m;
-      recording.rows.push_back(row);
-    }
+    for (const RecordingRow& row : press_and_hold(8.0).rows)
+      recording.rows.push_back({row.time_s + 18.0, row.position_m + slip_m, row.force_N});
     return checked(recording, CheckRequest{});
   };
   EXPECT_EQ(find(pressed_again(0.0), "surface_drift"), nullptr);
