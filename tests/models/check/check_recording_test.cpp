@@ -371,7 +371,7 @@ TEST(ForceLag, IsNamedWhereThePressesJump) {
     return checked(recording, CheckRequest{});
   };
   EXPECT_EQ(find(check_of(0.0), "lag"), nullptr);
-  for (const double late_s : {0.01, 0.03, 0.1, 0.3, 0.5}) {
+  for (const double late_s : {-0.3, -0.1, 0.01, 0.03, 0.1, 0.3, 0.5}) {
     const RecordingCheck check = check_of(late_s);
     ASSERT_NE(find(check, "lag"), nullptr) << late_s << all_of(check);
     EXPECT_NEAR(find(check, "lag")->value, late_s, 6e-3) << late_s;
