@@ -1,6 +1,7 @@
 // The roles of columns by their names and units, and by elimination.
 #include <algorithm>
 #include <charconv>
+#include <regex>
 #include <utility>
 
 #include "engine/base/text.h"
@@ -17,7 +18,8 @@ constexpr std::string_view kTimeWords =
     "zeitstempel datetime tiempo \xE6\x97\xB6\xE9\x97\xB4";
 constexpr std::string_view kPositionWords =
     "position pos weg displacement disp depth extension stroke crosshead travel compression indentation penetration "
-    "allongement traversenweg standardweg verschiebung eindringtiefe tiefe hub deplacement enfoncement desplazamiento "
+    "allongement traversenweg standardweg verformung druckverformung deformation verschiebung eindringtiefe tiefe hub "
+    "deplacement enfoncement desplazamiento "
     "posicion recorrido profundidad \xE4\xBD\x8D\xE7\xA7\xBB height distance gap deflection encoder x y z";
 constexpr std::string_view kForceWords =
     "force f kraft standardkraft pruefkraft normalkraft druckkraft load last fn fx fy fz charge loadcell newton effort "
@@ -28,7 +30,8 @@ constexpr std::string_view kNeverWords =
     "torque moment drehmoment couple mx my mz tx ty tz acceleration accel acc ax ay az beschleunigung gyro angle "
     "winkel "
     "velocity speed geschwindigkeit vitesse velocidad temperature temp stress spannung peak max error deviation fehler "
-    "abweichung";
+    "abweichung offset thickness dicke diameter durchmesser noise rms range resolution slope wear limit threshold "
+    "preload min";
 // Units that are also those of an acceleration and of a torque, so that a column needs a word for its role as well.
 constexpr std::string_view kAmbiguousUnits = "g nm";
 // Words of columns that have no role unless they have its unit.
@@ -37,14 +40,16 @@ constexpr std::string_view kOtherWords =
 // Words of columns that say what a row belongs to.
 constexpr std::string_view kIdentifyingWords =
     "specimen sample probe id sensor channel device test trial run series kanal pruefling versuch";
-// Words of columns that are a second choice: commanded and not measured values, raw values, and times that restart
-// ("Cycle Elapsed Time" beside "Total Time").
-constexpr std::string_view kSecondWords = "target desired setpoint soll sollwert command cmd reference raw cycle";
+// Words of columns that are a second choice: commanded and not measured values, and times that restart ("Cycle Elapsed
+// Time" beside "Total Time").
+constexpr std::string_view kSecondWords = "target desired setpoint set soll sollwert command cmd reference ref cycle";
 
+// Claims to a role, which add up. Columns with the unit of a position or a force compete as equals, whatever their
+// names, and without any those with a word for it.
+constexpr int kRightUnit = 10;
 constexpr int kWholeName = 6;
 constexpr int kOneWord = 4;
-constexpr int kRightUnit = 3;
-constexpr int kSecondChoice = 3;  // subtracted
+constexpr int kSecondChoice = 2;  // at most
 
 // Returns lower case, with umlauts and accents as plain letters.
 std::string plain_name(std::string_view text) {
@@ -112,7 +117,8 @@ Claims claims_of(const ForeignColumn& column) {
     // A unit that belongs to no role or is unknown ("Weg [%]"): a last choice, whose unit is then an error.
     const bool volts = role == 2 && volts_of(column.parts.foreign_unit) > 0.0;
     if (!column.parts.foreign_unit.empty() && !volts) claims[role] = std::min(claims[role], 1);
-    if (claims[role] > 0 && any_word_in(kSecondWords, words)) claims[role] = std::max(1, claims[role] - kSecondChoice);
+    if (claims[role] > 0 && any_word_in(kSecondWords, words))
+      claims[role] = claims[role] > kRightUnit ? kSecondChoice : 1;
   }
   if (any_word_in(kNeverWords, words)) return {};
   // "Time_F" is a time.
@@ -126,14 +132,34 @@ Claims claims_of(const ForeignColumn& column) {
   return claims;
 }
 
-// The columns with the strongest claim to a role; none without a claim.
+// The columns that can be a role; none without a claim.
 std::vector<std::size_t> strongest_columns(const std::vector<Claims>& claims, std::size_t role) {
-  int strongest = 1;
-  for (const Claims& claim : claims) strongest = std::max(strongest, claim[role]);
+  int least = 1;
+  for (const Claims& claim : claims) least = std::max(least, claim[role]);
+  // Clocks are compared later; positions and forces are not.
+  if (role > 0 && least >= kOneWord) least = least >= kRightUnit ? kRightUnit : kOneWord;
   std::vector<std::size_t> best;
   for (std::size_t i = 0; i < claims.size(); ++i)
-    if (claims[i][role] == strongest) best.push_back(i);
+    if (claims[i][role] >= least) best.push_back(i);
   return best;
+}
+
+// A factor beside the name or the unit of a column: "Force x100 (N)", "10*Force", "Force/10", "Force 10^-2 N", "F N
+// x10".
+std::string factor_in(std::string_view header) {
+  static const std::regex factor(R"(\*|×|10 ?\^|/ ?10+(?![0-9A-Za-z])|(^|[^A-Za-z0-9])(x ?10+|10+ ?x)(?![A-Za-z0-9]))");
+  std::cmatch found;
+  if (!std::regex_search(header.data(), header.data() + header.size(), found, factor)) return "";
+  return found[2].matched ? found.str(2) : found.str();
+}
+
+// Whether the values of a column are successive numbers.
+bool counts_rows(const ForeignColumn& column) {
+  double last = 0.0, value = 0.0;
+  bool counts = column.is_whole && column.values.size() > 2;
+  for (std::size_t i = 0; i < column.values.size() && counts; last = value, ++i)
+    counts = parse_table_number(column.values[i], '.', value) && (i == 0 || value == last + 1.0);
+  return counts;
 }
 
 // The column that the user means, or a problem.
@@ -162,6 +188,7 @@ bool is_role_word(const std::string& word) {
 
 NameAndUnit header_parts(std::string_view header) {
   header = trimmed(header);
+  const std::string factor = factor_in(header);
   using Parts = std::pair<std::string_view, std::string_view>;  // name, unit
   const auto split_at = [&](std::size_t at, std::size_t length) {
     const bool inside = at != std::string_view::npos && at > 0;
@@ -189,10 +216,15 @@ NameAndUnit header_parts(std::string_view header) {
     const std::string_view last = before.substr(before.find_last_of(' ') + 1);
     const bool scaled = !bracketed && header[before.size()] == ' ' && last.size() > 1 && last.size() < before.size() &&
                         last.find_first_not_of("x0123456789.,eE+-") == std::string_view::npos;
-    if (!torque && !scaled) return parts;
+    if (!torque && !scaled && factor.empty()) return parts;
     return {inner.name, std::nullopt,
-            (torque ? std::string(inner.unit->name) : std::string(last)) + " " + std::string(text), ""};
+            (torque   ? std::string(inner.unit->name)
+             : scaled ? std::string(last)
+                      : factor) +
+                " " + std::string(text),
+            ""};
   }
+  if (!factor.empty()) return {std::string(header), std::nullopt, factor, ""};
   if (bracketed) return {std::string(name), std::nullopt, std::string(trimmed(inside)), ""};
   // An unknown unit: "Load hN", or what follows a mark after a word for a role ("Kraft/Stein", "Weg in Furlong").
   if (const auto& [before, text] = split_at(header.find_last_of(" _,;:-./"), 1); is_prefixed_unit(text))
@@ -270,7 +302,9 @@ RoleChoice choose_columns(const std::vector<ForeignColumn>& columns, const RoleR
         const auto& [name, unit, foreign, contradicting] = columns[i].parts;
         const bool fits = unit ? static_cast<std::size_t>(unit->quantity) == role
                                : foreign.empty() || (role == 2 && volts_of(foreign) > 0.0);
-        if (fits && !excluded[i] && claims[i] == Claims{} && !identifies(columns[i])) best.push_back(i);
+        if (fits && !excluded[i] && claims[i] == Claims{} && !identifies(columns[i]) &&
+            !(role == 0 && counts_rows(columns[i])))
+          best.push_back(i);
       }
       if (has_header || role > 0) offer(role, best);
       if (!has_header && role == 0 && columns.size() == 3)
@@ -285,6 +319,7 @@ RoleChoice choose_columns(const std::vector<ForeignColumn>& columns, const RoleR
       continue;
     }
     choice.number[role] = best.front() + 1;
+    choice.unnamed[role] = claims[best.front()][role] == kRightUnit || claims[best.front()][role] <= kSecondChoice;
     excluded[best.front()] = true;
   }
   for (std::size_t a = 1; a < kRoles; ++a)

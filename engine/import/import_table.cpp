@@ -30,6 +30,9 @@ constexpr std::uint64_t kMostBad = 4;
 constexpr std::uint64_t kOtherForms = 2;
 // Two channels are not resampled where the interpolation of the slower one errs by more than this share of its range.
 constexpr double kInterpolationShare = 0.01;
+// Steps of the time are equal within this share; more steps of twice the length than this share are no single lost
+// rows.
+constexpr double kEqualSteps = 0.05, kDoubledSteps = 0.02;
 // The difference of two durations of one recording.
 constexpr double kDurationShare = 0.05, kDuration_s = 2.0;
 
@@ -342,6 +345,10 @@ class Importer {
                                                                    : "") +
               "; the columns are " + list_columns(columns_),
           choice.readings);
+    for (const std::size_t role : {1u, 2u})
+      if (choice.unnamed[role])
+        note("warning: " + column_name(number_[role]) + " is taken as the " + kRoleNames[role] +
+             ", because no other column can be it");
     std::ranges::remove_copy(choice.times, std::back_inserter(other_times_), number_[0]);
     for (std::size_t i = 0; i < columns_.size(); ++i) {
       const std::string& header = columns_[i].header;
@@ -524,7 +531,8 @@ class Importer {
       if (is_date(name, times_.first_cell * to_s)) dated.push_back(possible.back());
     }
     if (dated.size() == 1) possible = dated;
-    if (possible.size() != 1)
+    // Steps of exactly 1 may also count the rows.
+    if (possible.size() != 1 || (times_.whole && times_.steady && times_.plain_step == 1.0))
       return fail("found no unit of " + the_role(0) + " and steps of " + short_number(step) + ", expected one of " +
                       unit_names(Quantity::time) + "; add it with --units, or --rate HZ if the rows are evenly spaced",
                   possible);
@@ -801,29 +809,33 @@ class Importer {
     return places;
   }
 
-  // Refuses a clock that is so coarse that most rows have the time of the row above.
-  Status refuse_coarse_clock() const {
-    std::size_t shared = 0, first = 0, last = 0;  // slots at which the time changes
-    bool copies = true;
+  // Refuses a clock that is so coarse that rows with other values have the time of the row above.
+  Status refuse_coarse_clock() {
+    std::size_t shared = 0, first = 0, last = 0, doubled = 0;  // first, last: slots at which the time changes
     for (std::size_t i = 1; i < slots_.size(); ++i) {
-      if (own_s_[i] > own_s_[i - 1]) last = i, first = first > 0 ? first : i;
-      if (own_s_[i] != own_s_[i - 1]) continue;
-      ++shared;
-      copies = copies && values_[1][i] == values_[1][i - 1] && values_[2][i] == values_[2][i - 1];
+      const double step_s = own_s_[i] - own_s_[i - 1];
+      if (step_s > 0.0) last = i, first = first > 0 ? first : i;
+      if (std::abs(step_s / (to_si_[0] * times_.plain_step) - 2.0) < kEqualSteps) ++doubled;
+      if (step_s == 0.0 && (values_[1][i] != values_[1][i - 1] || values_[2][i] != values_[2][i - 1])) ++shared;
     }
-    if (copies || 2 * shared <= slots_.size()) return {};
+    if (static_cast<double>(doubled) > kDoubledSteps * static_cast<double>(slots_.size()))
+      note("warning: " + count_of(doubled, "step") +
+           " of the time are twice the others: rows are missing, or the clock " +
+           "is as coarse as the rows are apart; if they are evenly spaced, add --rate HZ");
+    if (shared <= request_.skip_bad_rows) return {};
     std::vector<Reading> readings;
     if (last > first) {
       // The rows between two changes of the time are known to one row.
       const auto between = static_cast<double>(last - first);
       double rate_Hz = between / (own_s_[last] - own_s_[first]);
       if (std::abs(std::round(rate_Hz) - rate_Hz) * between <= 2.0 * rate_Hz) rate_Hz = std::round(rate_Hz);
-      if (rate_in_range(1.0 / rate_Hz)) readings.push_back({"--rate " + short_number(rate_Hz), "the mean rate"});
+      if (rate_in_range(1.0 / rate_Hz))
+        readings.push_back({"--rate " + short_number(rate_Hz), "the mean rate, if the rows are evenly spaced"});
     }
-    return fail("found the time of the row above" + quoted_name(number_[0]) + " in " + std::to_string(shared) + " of " +
-                    std::to_string(slots_.size()) +
-                    " rows, expected a later time in every row; write the times with more digits, or, if the rows are "
-                    "evenly spaced, add --rate HZ",
+    if (kMostBad * shared <= slots_.size())
+      readings.push_back({"--skip-bad-rows " + std::to_string(shared), "without these rows"});
+    return fail("found the time of the row above" + quoted_name(number_[0]) + " in " + count_of(shared, "row") +
+                    " with other values, expected a later time in every row; write the times with more digits",
                 readings);
   }
 

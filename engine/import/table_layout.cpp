@@ -70,23 +70,17 @@ std::pair<bool, std::size_t> fit_of(Lines lines, const Delimiter& delimiter, cha
   return {best.second == 0, best.first};
 }
 
-// Refuses numbers whose decimal mark may be one of thousands in every cell: "1,234", but not "0,123" or "1,5"; points
-// only in a column where other numbers have none.
+// Refuses numbers whose decimal mark may be one of thousands in every cell: "1,234", but not "0,123" or "1,5".
 Status check_decimal_mark(Lines lines, const TableLayout& layout) {
   Fields fields;
   std::string example;
-  std::vector<bool> whole(layout.columns, false), grouped = whole;
   for (const std::string_view line : lines) {
     if (!is_row(layout, line, fields)) continue;
-    for (std::size_t i = 0; i < std::min(fields.size(), layout.columns); ++i) {
-      std::string_view field = fields[i];
+    for (std::string_view field : fields) {
       double value = 0.0;
-      if (!parse_table_number(field, layout.decimal, value)) continue;
-      if (field.front() == '-' || field.front() == '+') field.remove_prefix(1);
-      if (field.find(layout.decimal) == std::string_view::npos) {
-        whole[i] = whole[i] || field.size() == 3;
+      if (field.find(layout.decimal) == std::string_view::npos || !parse_table_number(field, layout.decimal, value))
         continue;
-      }
+      if (field.front() == '-' || field.front() == '+') field.remove_prefix(1);
       std::string plain(field), marked;
       std::erase(plain, layout.decimal);
       if (field.front() == '0' || plain.find_first_not_of("0123456789") != std::string::npos) return {};
@@ -94,14 +88,10 @@ Status check_decimal_mark(Lines lines, const TableLayout& layout) {
       std::ranges::replace(marked, ',', layout.decimal);
       if (marked != field) return {};
       example = field;
-      grouped[i] = true;
     }
   }
-  const bool comma = layout.decimal == ',';
-  bool mixed = false;
-  for (std::size_t i = 0; i < whole.size(); ++i) mixed = mixed || (whole[i] && grouped[i]);
-  if (example.empty() || (!comma && !mixed)) return {};
-  const std::string mark = comma ? "comma" : "point";
+  if (example.empty()) return {};
+  const std::string mark = layout.decimal == ',' ? "comma" : "point";
   return Error{"found numbers such as " + example + ", whose " + mark +
                " may be a decimal mark or a thousands mark; add --decimal " + mark +
                ", or export the numbers without thousands marks"};
@@ -315,6 +305,7 @@ Result<TableLayout> find_table_layout(Lines lines, std::optional<char> given_dec
   TableLayout layout;
   std::pair<bool, std::size_t> best;
   for (const Delimiter& delimiter : kDelimiters) {
+    if (delimiter.is_blanks() && best.first && best.second > 0) break;  // they also separate a date from a time
     for (const char decimal : {'.', ','}) {
       if (given_decimal && *given_decimal != decimal) continue;
       const auto fit = fit_of(lines, delimiter, decimal);
@@ -326,8 +317,9 @@ Result<TableLayout> find_table_layout(Lines lines, std::optional<char> given_dec
   }
   const std::size_t tried = std::min(lines.size(), kSampleLines);
   const Error none{"found no rows of numbers in the first " + std::to_string(tried) +
-                   (tried == 1 ? " line" : " lines") +
-                   ", expected a table with columns of time, position and force; export the recording as CSV"};
+                   (tried == 1 ? " line" : " lines") + ", such as \"" +
+                   (lines.empty() ? "" : printable(lines[tried / 2])) +
+                   "\", expected a table with columns of time, position and force; export the recording as CSV"};
   if (best.second == 0) return none;
   measure_rows(lines, layout);
   find_blocks(lines, most_bad, layout);

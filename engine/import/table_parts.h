@@ -154,6 +154,7 @@ struct Reading {
 };
 struct RoleChoice {
   std::array<std::size_t, kRoles> number{};  // of the column of each role, from 1; 0 without a time
+  std::array<bool, kRoles> unnamed{};        // chosen although its name does not say so
   std::vector<std::size_t> times{};          // all columns that claim to be the time, from 1
   std::string problem{};                     // otherwise
   std::vector<Reading> readings{};

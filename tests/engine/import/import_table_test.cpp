@@ -182,6 +182,7 @@ TEST(ImportTable, OneReadingIsImported) {
        "LabVIEW Measurement\nX_Columns\tNo\nDelta_X\t0.01\t0.01\nX0\t0\t0\nX_Value\tF (N)\tx (mm)\n" +
            table_of("", "\t%f\t%x"),
        ""},
+      {"a date between tabs", table_of("Time\tx (mm)\tF (N)", "2024-03-05 %c\t%x\t%f"), ""},
       {"a remark that is left out",
        table_of(kHeader, "%t,%x,%f", 0, 8) + "event: hold\n" + all_replaced(kPlain, kHeader + "\n" + rows_of(0, 8), ""),
        "--skip-bad-rows 1"},
@@ -298,13 +299,36 @@ TEST(ImportTable, OtherwiseTheReadingsThatRemainAreCommands) {
        "rig.txt:1: found the unit \"stone\" in column 3 \"Load (stone)\", expected a unit of force (N, mN, uN, nN, pN, "
        "cN, dN, daN, kN, g, kg, ozf, lbf, kip); convert the column, choose another with --columns force=NAME, or give "
        "the unit of the numbers with --units"},
+      {table_of("t_s,LVDT (mm),Crosshead (mm),F_N", "%t,%x,1%x,%f"), "",
+       "rig.txt: found 2 columns that can be the position, expected one column for each of time, position and force; "
+       "the "
+       "columns are 1 \"t_s\", 2 \"LVDT (mm)\", 3 \"Crosshead (mm)\", 4 \"F_N\"" +
+           command + "--columns position=2  # \"LVDT (mm)\"" + command + "--columns position=3  # \"Crosshead (mm)\""},
+      {table_of("t,x_mm,F_N", "%i,%x,%f"), "",
+       "rig.txt: found no unit of the time \"t\" and steps of 1, expected one of s, ms, us, ns, ticks, min, h, days; "
+       "add "
+       "it with --units, or --rate HZ if the rows are evenly spaced" +
+           command + "--units ms  # 1000 Hz"},
+      {all_replaced(kPlain, "0.51,", "0.50,"), "",
+       "rig.txt: found the time of the row above \"Time (s)\" in 1 row with other values, expected a later time in "
+       "every "
+       "row; write the times with more digits" +
+           command + "--rate 100  # the mean rate, if the rows are evenly spaced" + command +
+           "--skip-bad-rows 1  # without these rows"},
+      {table_of("Zeit (ms);Weg (um);F (mN)", "%m;2.%i;3.%i", 100, 190), "",
+       "rig.txt: found numbers such as 3.189, whose point may be a decimal mark or a thousands mark; add --decimal "
+       "point, "
+       "or export the numbers without thousands marks"},
       {"only words\nand more\n", "",
-       "rig.txt: found no rows of numbers in the first 2 lines, expected a table with columns of time, position and "
+       "rig.txt: found no rows of numbers in the first 2 lines, such as \"and more\", expected a table with columns of "
+       "time, position and "
        "force; export the recording as CSV"},
   };
-  for (const Case& one : cases) {
-    EXPECT_EQ(message(one.text, one.options), one.error);
-  }
+  for (const Case& one : cases) EXPECT_EQ(message(one.text, one.options), one.error);
+  for (const char* name : {"Force*100 (N)", "Force (N) x100", "10 x Force (N)", "F_x10_N", "Force/10 (N)", "F 10^-2 N"})
+    EXPECT_TRUE(
+        test::has_parts(message(table_of(std::string("t_s,x_mm,") + name, "%t,%x,%f")), {"the unit", "convert"}))
+        << name;
   EXPECT_NE(message(""), "accepted");
   EXPECT_NE(message("PK\x03\x04rest"), "accepted");
 }
@@ -342,7 +366,7 @@ TEST(ImportTable, ARowThatIsLeftOutLeavesItsTime) {
     coarse += "12:30:" + std::to_string(10 + i / 20) + ";" + std::to_string(i) + ";" +
               (i == 30 ? "OL" : std::to_string(i)) + "\n";
   const std::string refused = message(coarse, "--skip-bad-rows 1");
-  EXPECT_TRUE(test::has_parts(refused, {"in 190 of 200 rows", "--skip-bad-rows 1 --rate 20  # the mean rate"}))
+  EXPECT_TRUE(test::has_parts(refused, {"in 190 rows with other", "--skip-bad-rows 1 --rate 20  # the mean rate"}))
       << refused;
   const auto clock = import_bytes(coarse, "--skip-bad-rows 1 --rate 20");
   ASSERT_TRUE(clock.ok()) << clock.error().message;
