@@ -121,14 +121,15 @@ Claims claims_of(const ForeignColumn& column) {
       claims[role] = claims[role] > kRightUnit ? kSecondChoice : 1;
   }
   if (any_word_in(kNeverWords, words)) return {};
-  // "Time_F" is a time.
-  if (claims[0] > 0 && !words.empty() && is_word_of(kTimeWords, words.front())) claims[1] = claims[2] = 0;
+  // "Time_F" and "Time 1 - default sample rate" are times.
+  const bool is_time = claims[0] > 0 && !words.empty() && is_word_of(kTimeWords, words.front());
+  if (is_time) claims[1] = claims[2] = 0;
   // Only the strongest claims of a column count.
   const int strongest = *std::max_element(claims.begin(), claims.end());
   for (int& claim : claims) claim = claim < strongest ? 0 : claim;
   // A word for force excludes the axis beside it ("force.x"); a word for another quantity excludes all roles.
   if (claims[2] > 0 && !unit) claims[1] = 0;
-  if (any_word_in(kOtherWords, words) && !unit) claims = {};
+  if (any_word_in(kOtherWords, words) && !unit && !is_time) claims = {};
   return claims;
 }
 

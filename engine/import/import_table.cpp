@@ -1,6 +1,7 @@
 #include "engine/import/import_table.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <filesystem>
 #include <iterator>
@@ -117,6 +118,16 @@ class Importer {
   std::string the_role(std::size_t role) const {
     return "the " + std::string(kRoleNames[role]) + quoted_name(number_[role]);
   }
+  // The numbers, dates and times of day in a line, however they are separated, and not as a part of a word.
+  static std::ptrdiff_t numbers_in(std::string_view line) {
+    std::ptrdiff_t numbers = 0;
+    for (std::size_t at = 0; (at = line.find_first_of("0123456789", at)) != std::string_view::npos;) {
+      const char before = at > 0 ? line[at - 1] : ' ';
+      if (before != '_' && std::isalpha(static_cast<unsigned char>(before)) == 0) ++numbers;
+      at = std::min(line.find_first_not_of("0123456789.:+-/eE'", at), line.size());
+    }
+    return numbers;
+  }
   static std::string rows_option(const LineRange& part) {
     return "--rows " + std::to_string(part.first) + "-" + std::to_string(part.last);
   }
@@ -210,13 +221,27 @@ class Importer {
     return {};
   }
 
-  // Refuses a header that does not determine the columns, unless the user gives their numbers; and numbers below it.
+  // Refuses lines below the header, or after the table, that have as many numbers as a row and are none; and a header
+  // that does not determine the columns, unless the user gives their numbers.
   Status check_header() {
-    if (layout_.numbers_below > 0 && !request_.rows && request_.block == 0)
-      return fail_at(layout_.numbers_below,
-                     "found numbers in a line between the names of the columns and the rows, expected none, because "
-                     "they may scale the columns; remove the line, or leave it out",
-                     {{rows_option({block_.begin + 1, block_.end}), "without this line"}});
+    Fields fields;
+    const auto cells_with = [&](std::size_t line, const auto& test) {
+      split_table_fields(lines_[line], layout_.delimiter, fields);
+      return std::ranges::count_if(fields, test);
+    };
+    const auto numbers = cells_with(block_.begin, [](std::string_view field) { return numbers_in(field) > 0; });
+    const auto is_number = [&](std::string_view field) { return parse_table_cell(field, layout_.decimal).has_value(); };
+    std::size_t line = layout_.header > 0 || block_.begin == 0 ? layout_.header : block_.begin - 1;
+    for (; line < lines_.size() && !request_.rows && request_.block == 0; ++line) {
+      if (line == block_.begin) line = block_.end;
+      if (line == lines_.size()) break;
+      if (numbers_in(lines_[line]) >= numbers || cells_with(line, is_number) >= 2)
+        return fail_at(
+            line + 1,
+            "found \"" + printable(lines_[line]) +
+                "\", which has the numbers of a row and is none of the table; correct the line, or leave it out",
+            {{rows_option({block_.begin + 1, block_.end}), "without such lines"}});
+    }
     if (!layout_.misfit && layout_.rival == 0) return {};
     std::vector<std::string> names;
     for (const std::string_view name : layout_.names) names.push_back('"' + printable(name) + '"');
@@ -252,12 +277,11 @@ class Importer {
     for (std::size_t i = block_.begin; i < block_.end; ++i) {
       const std::string_view line = lines_[i];
       if (trimmed(line).empty() && !empty_counts) continue;
-      const bool comment = line.starts_with('#');
-      if (comment && !(no_clock_ && is_row(layout_, line.substr(1), fields))) {
+      if (line.starts_with('#') && !is_row(layout_, line.substr(1), fields)) {
         leave_out("comments", i + 1);
         continue;
       }
-      const bool row = !comment && is_row(layout_, line, fields);
+      const bool row = !line.starts_with('#') && is_row(layout_, line, fields);
       if (!row) leave_out("text between the rows", i + 1);
       if (!row && texts_++ == 0) first_text_ = i + 1;
       if (row || no_clock_) slots_.push_back({static_cast<std::uint32_t>(i + 1), row});

@@ -335,12 +335,12 @@ void find_table_header(Lines lines, std::size_t first, TableLayout& layout) {
   constexpr std::size_t named = 0, misfit = 1, words = 2, units = 3, kinds = 4;
   std::array<Fields, kinds> fields;
   std::array<std::size_t, kinds> line{};  // from 1
-  std::size_t seen = 0, numbers = 0;
+  std::size_t seen = 0;
   Fields row;
   for (std::size_t i = first; i-- > 0 && seen < kReach;) {
     if (trimmed(lines[i]).empty()) continue;
-    const bool end_of_head = lines[i].starts_with("***");  // of LabVIEW, whose head names the axis
-    if (end_of_head || is_row(layout, lines[i], row)) {
+    if (lines[i].starts_with("***")) break;  // the end of LabVIEW's head, which names units and the axis
+    if (is_row(layout, lines[i], row)) {
       if (line[named] > 0) break;
       continue;  // a second block may share the header of the first
     }
@@ -357,8 +357,6 @@ void find_table_header(Lines lines, std::size_t first, TableLayout& layout) {
                              : names_row && fits && own                             ? words
                                                                                     : kinds;
     if (kind == named && line[named] > 0 && names != fields[named]) layout.rival = i + 1;
-    const LineShape shape = shape_of(lines[i], layout.delimiter, layout.decimal, row);
-    if (below && shape.numbers >= shape.clocks + 2 && shape.fields >= layout.fields) numbers = i + 1;
     if (kind == kinds || line[kind] > 0) continue;
     line[kind] = i + 1;
     fields[kind] = std::move(names);
@@ -369,7 +367,6 @@ void find_table_header(Lines lines, std::size_t first, TableLayout& layout) {
     layout.header = line[header];
     layout.names = fields[header];
     layout.misfit = header == misfit;
-    if (numbers > layout.header) layout.numbers_below = numbers;
     if (layout.misfit) return;
     layout.columns = std::clamp(layout.names.size(), layout.columns, layout.widest);
     layout.names.resize(layout.columns);

@@ -99,12 +99,11 @@ struct TableLayout {
   std::vector<RowBlock> blocks{};
   bool skippable = true;  // the lines between the blocks are no headers, so that they may be left out
 
-  Fields names{};                 // one a column, unless `misfit`; empty without a header
-  bool misfit = false;            // the number of names is not that of the columns
-  Fields units{};                 // one a column; empty without a row of units
-  std::size_t header = 0;         // line, from 1; 0 without a header
-  std::size_t rival = 0;          // another line that names the columns, from 1
-  std::size_t numbers_below = 0;  // a line below the header with numbers that is no row, from 1
+  Fields names{};          // one a column, unless `misfit`; empty without a header
+  bool misfit = false;     // the number of names is not that of the columns
+  Fields units{};          // one a column; empty without a row of units
+  std::size_t header = 0;  // line, from 1; 0 without a header
+  std::size_t rival = 0;   // another line that names the columns, from 1
   // From a file of LabVIEW without times: the interval and the first time of each column.
   std::vector<double> steps_s{}, starts_s{};
 };

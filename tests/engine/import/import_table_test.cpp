@@ -269,9 +269,15 @@ TEST(ImportTable, OtherwiseTheReadingsThatRemainAreCommands) {
        "rig.txt:102: found a time 40.01 s after that of the row above \"Time (s)\" at a multiple of 100 s, as where "
        "hours, minutes and seconds are written as one number; write seconds, or 14:03:22.010"},
       {kHeader + "\nScale,0.5,2.5\n" + rows_of(0, kRows), "",
-       "rig.txt:2: found numbers in a line between the names of the columns and the rows, expected none, because they "
-       "may scale the columns; remove the line, or leave it out" +
-           command + "--rows 3-202  # without this line"},
+       "rig.txt:2: found \"Scale,0.5,2.5\", which has the numbers of a row and is none of the table; correct the line, "
+       "or "
+       "leave it out" +
+           command + "--rows 3-202  # without such lines"},
+      {kPlain + "t:2.00, x:1.0, F:1.0\n", "",
+       "rig.txt:202: found \"t:2.00, x:1.0, F:1.0\", which has the numbers of a row and is none of the table; correct "
+       "the "
+       "line, or leave it out" +
+           command + "--rows 2-201  # without such lines"},
       {table_of("Time (ms),x_mm,F_N", "%c,%x,%f"), "",
        "rig.txt: found times of a clock in the time \"Time (ms)\", expected numbers in ms, as the header says" +
            command + "--units s  # the times of the clock"},
