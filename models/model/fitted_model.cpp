@@ -273,7 +273,8 @@ void FittedModel::assess(const double* features, ForceEstimate& estimate) const 
   estimate.out_of_domain = guard_.trust_at(squared_distance) < 0.5 || features[depth_] > deepest_m_;
   if (!data_.error_bound) return;
   const double beyond = std::sqrt(squared_distance) - data_.cover.inner_radius;
-  estimate.predicted_error_N = data_.error_bound->at(estimate.force_N, beyond);
+  estimate.predicted_error_N = data_.error_bound->at(estimate.force_N, beyond) +
+                               data_.trend.moved_N(features[depth_], data_.error_bound->surface_error_m);
 }
 
 }  // namespace palpate

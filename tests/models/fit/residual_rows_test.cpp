@@ -8,6 +8,7 @@
 
 #include "models/correction/algebra.h"
 #include "tests/support/exact_samples.h"
+#include "tests/support/example_model.h"
 #include "tests/support/message_parts.h"
 #include "tests/support/random_points.h"
 
@@ -179,14 +180,33 @@ TEST(FitBound, HoldsInEveryPhase) {
   }
 }
 
-// Errors of 3 N for each unit of distance beyond the inner radius, 0.1; a recording that as recorded reads 0.2 N more,
-// with an uncertainty of 0.1 N.
+// Three recordings whose surfaces differ by 1 mm, in a material of 1 N/mm: nothing else is left, and the next surface
+// has the error 1 mm sqrt(2 x 8 / 27). A single one has that of its own surface.
+TEST(FitBound, GrowsByTheErrorOfTheSurface) {
+  std::vector<Prediction> predictions;
+  for (int i = 0; i < 150; ++i) predictions.push_back({i / 50 - 1.0, 3.0, 0.0, i / 50, 4e-3});
+  ModelData common;
+  common.largest_force_N = 5.0;
+  common.trend.reference_depth_m = 8e-3;
+  common.trend.elastic = test::even_spline(8.0, 8.0);
+  common.provenance.offsets.resize(3);
+  const auto several = fit_bound(predictions, common);
+  ASSERT_TRUE(several.has_value());
+  EXPECT_NEAR(several->surface_error_m, 1e-3 * std::sqrt(16.0 / 27.0), 1e-5);
+  EXPECT_LT(several->at(3.0, 0.0), 0.02);
+  common.provenance.offsets = {{"press", 0.0, 2e-4}};
+  const auto one = fit_bound(predictions, common);
+  EXPECT_EQ(one->surface_error_m, 2e-4);
+  EXPECT_GT(one->at(3.0, 0.0), 0.9);
+}
+
+// Errors of 3 N for each unit of distance beyond the inner radius, 0.1; a recording that as recorded reads 0.2 N more.
 TEST(FitBound, DistancesCountFromTheInnerRadiusAndForcesAsRecorded) {
   constexpr Eigen::Index kRows = 200;
   ResidualRows rows;
   rows.points = Eigen::MatrixXd::Zero(1, kRows);
   rows.force_N = Eigen::VectorXd::Constant(kRows, 2.0);
-  rows.depth_m = rows.speed_m_per_s = rows.moved_N = rows.moved_error_N = Eigen::VectorXd::Zero(kRows);
+  rows.depth_m = rows.speed_m_per_s = rows.moved_N = Eigen::VectorXd::Zero(kRows);
   rows.trend_N.resize(kRows, 2);
   for (Eigen::Index i = 0; i < kRows; ++i) {
     rows.fold.push_back(i < kRows / 2 ? 0 : 1);
@@ -202,8 +222,7 @@ TEST(FitBound, DistancesCountFromTheInnerRadiusAndForcesAsRecorded) {
   EXPECT_NEAR(bound->per_distance_N, 3.0, 0.1);
   EXPECT_LT(bound->at(2.0, 0.0), 0.05);
   rows.moved_N.tail(kRows / 2).setConstant(-0.2);
-  rows.moved_error_N.tail(kRows / 2).setConstant(0.1);
-  EXPECT_NEAR(predictions_of(rows, common, {}).back().error_N - predictions_of(rows, common, {})[99].error_N, 0.3,
+  EXPECT_NEAR(predictions_of(rows, common, {}).back().error_N - predictions_of(rows, common, {})[99].error_N, -0.2,
               1e-12);
 }
 
