@@ -91,8 +91,7 @@ TEST(ModelIo, ForcesAreBitIdenticalAfterLoading) {
   for (const ModelData& data : example_models()) {
     SCOPED_TRACE(data.name);
     ASSERT_TRUE(save_model(folder.file(data.name), data, false).ok());
-    const auto loaded = load_model(folder.file(data.name));
-    ASSERT_TRUE(loaded.ok()) << loaded.error().message;
+    const Result loaded = test::must(load_model(folder.file(data.name)));
     EXPECT_EQ(text_of((*loaded)->data()), text_of(data));  // with all fields
     const FittedModel original(data);
     test::Numbers numbers(99);
