@@ -268,14 +268,13 @@ std::optional<ErrorBound> fit_bound(const std::vector<Prediction>& predictions, 
   const double surface_error_m = register_surfaces(units, common);
   Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(3, 3);
   Eigen::VectorXd right = Eigen::VectorXd::Zero(3);
-  for (const auto& [unit, rows] : units) {
+  for (const auto& [unit, rows] : units)
     for (const Prediction& one : rows) {
       const double scale = 1.0 / common.jnd.at(one.predicted_N);
       const Eigen::Vector3d row = scale * Eigen::Vector3d(1.0, std::abs(one.predicted_N), one.beyond);
       gram += row * row.transpose();
       right += row * scale * std::abs(one.error_N);
     }
-  }
   const Eigen::VectorXd shape = solve_non_negative(gram, right);
   // One unit of distance beyond the data nothing is known but the range of the force: the mean error of a prediction in
   // its middle is a quarter of it, and the largest error of any prediction all of it.
