@@ -14,7 +14,7 @@ zero and lag) to the forces of the test. It shows the error after registration o
 
 The sets of one folder are one rig. Means are over rigs, each the mean of its tests, with a 95 % interval from a
 bootstrap over rigs; two models are compared by the mean of their differences, in the same way. Models are named as in
-palpate fit --list-methods; of methods that draw random numbers the medians of some seeds are shown. GP, forest and ridge
+palpate fit --list-methods; of methods with a seed the medians of some seeds are shown. GP, forest and ridge
 are the baselines of baselines.py. --json saves the figures; --against prints the differences from such a file;
 --baselines FILE keeps those of the baselines, which do not depend on the program. --write puts the tables into
 bench/RESULTS.md, and the means into README.md together with the sentence and the figure of a report on a material on
@@ -47,7 +47,8 @@ FIGURE = "assets/figures/speed_error.png"
 SHOWN = "layered"  # material of that figure; on others, such as silicone, all methods may equal the trend
 MODELS = ["voxel", "random", "kdtree", "greedy", "trend", "trend+greedy"]
 OURS = "trend+greedy"
-SEEDED = ("random", "greedy")  # methods on the measured force that draw random numbers
+SEEDED = ("random", "kdtree", "greedy")  # methods on the measured force with a seed: random draws, or digits of the sites
+WIDE = 5.0  # points between the shares of two seeds that are named
 RECORDED, VIRTUAL = "Recorded sets", "Virtual materials"
 LEAK_ROWS = 20  # equal forces in a row, with some different values, that two recordings do not have by chance
 # Additional sets that do not follow from the file names of a folder.
@@ -66,10 +67,10 @@ AFTER = {"test_cycle2": "train_cycle1", "test_cycle3": "train_cycles1_2", "rearf
 
 
 def run(palpate, *arguments):
-    done = subprocess.run([palpate, *map(str, arguments)], stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+    done = subprocess.run([palpate, *map(str, arguments)], capture_output=True, encoding="utf-8")
     if done.returncode != 0:
-        raise RuntimeError(done.stderr.decode().strip().splitlines()[-1])
-    return done.stdout.decode()
+        raise RuntimeError(done.stderr.strip().splitlines()[-1])
+    return done.stdout
 
 
 def rows_of(path):
@@ -168,12 +169,12 @@ def of_model(options, folder, one, model):
                  for seed in range(options.seeds if model.split("-")[0] in SEEDED else 1)]
     except RuntimeError as error:
         return {"error": str(error)}
-    middle = dict(seeds[0])
-    middle["tests"] = [{figure: median([seed["tests"][test][figure] for seed in seeds])
-                        for figure in seeds[0]["tests"][test] if figure not in ("phases", "held_in")} for test in range(len(one.tests))]
-    for figures, first in zip(middle["tests"], seeds[0]["tests"]):
-        figures.update({key: first[key] for key in ("phases", "held_in")})
-    return middle
+    tests = []
+    for draws in zip(*(seed["tests"] for seed in seeds)):
+        shares = [draw["share"] for draw in draws]
+        tests.append({figure: value if isinstance(value, dict) else median([draw[figure] for draw in draws])
+                      for figure, value in draws[0].items()} | {"range": (min(shares), max(shares))})
+    return seeds[0] | {"tests": tests}
 
 
 def median(values):
@@ -226,10 +227,6 @@ def of_seed(options, folder, one, model, seed):
             "ns": entry["evaluation_ns"]["median"], "beyond": float(abs(forces).max() / one.largest_N)}
 
 
-def wanted(options, name):
-    return not options.sets or any(word in name for word in options.sets)
-
-
 def recorded(options):
     folders = [path for base in options.recordings for path in sorted(pathlib.Path(base).glob("*")) if path.is_dir()]
     by_name = {folder.name: folder for folder in folders}
@@ -252,7 +249,7 @@ def recorded(options):
 def virtual(options, folder):
     for line in run(options.palpate, "synth", "--list").splitlines():
         material = line.split()[0]
-        if not wanted(options, material):
+        if not options.wanted(material):
             continue
         (folder / material).mkdir()
         paths = [folder / material / f"{seed}.csv" for seed in (1, 2)]
@@ -367,10 +364,18 @@ def hard(kinds, results, models):
         yield f"| {what} | " + " | ".join(value(known[model]) if known[model] else "" for model in models) + " |"
 
 
+def by_seed(kinds, results, models, seeds):
+    """Which shares depend on the seed; the intervals leave this out."""
+    named = [f"{model} on {one.name} ({low:.1f} to {high:.1f})" for model in models for sets in kinds.values() for one in sets
+             for low, high in [test.get("range", (0.0, 0.0)) for test in results[one.name, model].get("tests", [])]
+             if high - low >= WIDE]
+    if named:
+        yield f"Shares with {WIDE:.0f} points or more between {seeds} seeds, whose median is shown: {', '.join(named)}."
+
+
 def beyond_data(kinds, results, models):
     """What a loop needs and a table of shares does not show, of OURS and of the standard models."""
-    every = [one for sets in kinds.values() for one in sets]
-    known = {model: [results[one.name, model] for one in every if "beyond" in results[one.name, model]]
+    known = {model: [results[one.name, model] for sets in kinds.values() for one in sets if "beyond" in results[one.name, model]]
              for model in (OURS, *baselines.KINDS) if model in models}
     if len(known) > 1 and all(known.values()):
         yield ("Pressed half as deep again and three times as fast as in the training, the largest force over that of the training "
@@ -435,19 +440,20 @@ def main():
     parser.add_argument("--models", nargs="*", default=[*MODELS, *baselines.KINDS])
     parser.add_argument("--sets", nargs="*", default=[])
     parser.add_argument("--no-virtual", action="store_true")
-    parser.add_argument("--seeds", type=int, default=3, help="fits of methods that draw random numbers")
+    parser.add_argument("--seeds", type=int, default=5, help="fits of methods with a seed, as in a report")
     parser.add_argument("--fit", default="", help="more options of every fit, e.g. '--kernel linear'")
     parser.add_argument("--json")
     parser.add_argument("--against")
     parser.add_argument("--baselines", type=pathlib.Path, help="results of the baselines: read if there, else written")
     parser.add_argument("--write", action="store_true")
     options = parser.parse_args()
+    options.wanted = lambda name: not options.sets or any(word in name for word in options.sets)
     kept = json.loads(options.baselines.read_text()) if options.baselines and options.baselines.exists() else {}
     with tempfile.TemporaryDirectory() as scratch, concurrent.futures.ThreadPoolExecutor(2) as pool:
         folder = pathlib.Path(scratch)
         build = pathlib.Path(options.palpate).resolve().parent
         os.environ["PALPATE_LIBRARY"] = str(build / "models" / "library" / "libpalpate_fit.so")
-        real = [Set(*one, folder, options.palpate) for one in recorded(options) if wanted(options, one[0])]
+        real = [Set(*one, folder, options.palpate) for one in recorded(options) if options.wanted(one[0])]
         made = [Set(*one, folder, options.palpate) for one in virtual(options, folder)] if not options.no_virtual else []
         kinds = {kind: sets for kind, sets in ((RECORDED, real), (VIRTUAL, made)) if sets}
         jobs = {(one.name, model): pool.submit(of_model, options, folder, one, model)
@@ -464,7 +470,8 @@ def main():
         summary = list(means(kinds, results, options.models))
         beyond = list(hard(kinds, results, options.models))
         sentences = [verdict(kind, sets, results, options.models) for kind, sets in kinds.items() if OURS in options.models]
-        sentences += [*bounds(kinds, results), *beyond_data(kinds, results, options.models)]
+        sentences += [*bounds(kinds, results), *beyond_data(kinds, results, options.models),
+                      *by_seed(kinds, results, options.models, options.seeds)]
         print("\n".join([*rows, "", *summary, "", *beyond, "", *sentences]))
         if options.write:
             front_page(options, folder, (rows, summary, beyond, sentences), kinds, results)

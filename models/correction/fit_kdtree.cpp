@@ -6,8 +6,8 @@
 // A refit costs one new pair of columns, not a new matrix: the polynomial tail is projected out of the columns, and
 // their Gram matrix is updated and factorised (Cholesky, with a relative ridge of 1e-13). Duplicate sites stay in one
 // leaf. A leaf with a single point cannot be split; the sample with the next largest error is taken. O(N centres) a
-// step.
-// Source: Hoever & Harders (2009), section 4.2.2.
+// step. A tree depends on rounding, which decides between equal coordinates and errors: seeds above 1 draw the 12th
+// digit of all coordinates, to show how much. Source: Hoever & Harders (2009), section 4.2.2.
 #include <algorithm>
 #include <array>
 #include <cstdlib>
@@ -124,7 +124,10 @@ class GrowingFit {
 };
 
 Result<FittedCorrection> fit_kdtree(const MethodTask& task, const FitControl& control) {
-  const Sites& sites = task.sites;
+  Sites sites = task.sites;
+  SplitMix64 random(task.seed);
+  if (task.seed > 1)
+    for (double& x : sites.points.reshaped()) x *= 1.0 + 1e-15 * static_cast<double>(random.below(1000));
   const auto most = static_cast<std::size_t>(std::min<Eigen::Index>(std::max(task.centres, 0), sites.count()));
   const BlasThreads one_thread(1);
   std::vector<Leaf> leaves;
@@ -177,7 +180,7 @@ Result<FittedCorrection> fit_kdtree(const MethodTask& task, const FitControl& co
 const Method kKdTreeMethod{
     .name = "kdtree",
     .colour = 0x0072B2,
-    .takes = kTakesCentres | kTakesKernel,
+    .takes = kTakesCentres | kTakesKernel | kTakesSeed,
     .expected_seconds = 0.11,
     .fit = fit_kdtree,
 };

@@ -221,9 +221,8 @@ Result<PreparedTraining> prepare_training(SamplesPointer samples, const Training
     }
     if (trend->columns.folds() > 1) prepared.left_out = std::move(rows);
     prepared.sites.smoothing = choice.smoothing;
-    const double outer_to_inner = common.cover.outer_radius / common.cover.inner_radius;
+    common.cover.outer_radius *= choice.inner_radius / common.cover.inner_radius;
     common.cover.inner_radius = choice.inner_radius;
-    common.cover.outer_radius = outer_to_inner * choice.inner_radius;
   }
   common.ends = recording_ends(table, common.features);
   // A model takes positions in the coordinate of its recordings.

@@ -129,8 +129,8 @@ struct ResidualRows {
   std::vector<int> unit;
   Eigen::VectorXd speed_m_per_s;
   // What is added to the error of a prediction where the recording is taken as recorded: the change of the elastic
-  // response by the offset of its position, less its force zero; and the uncertainty of the offset, >= 0.
-  Eigen::VectorXd moved_N, moved_error_N;
+  // response by the offset of its position, less its force zero.
+  Eigen::VectorXd moved_N;
   KernelKind kernel = KernelKind::cubic;
 
   int folds() const { return static_cast<int>(trend_N.cols()); }
@@ -155,8 +155,8 @@ struct ResidualRows {
 ResidualRows residual_rows(const ModelData& common, const TrendColumns& columns, const Eigen::MatrixXd& features,
                            const Eigen::MatrixXd& left_out_trends);
 
-// The prediction of a row, as recorded, by a model that was fitted without its fold. `beyond`: its distance to the
-// nearest row of another fold, beyond the inner radius.
+// The prediction of a row, as recorded, by a model that was fitted without its fold, and how much it exceeds the
+// measured force. `beyond`: its distance to the nearest row of another fold, beyond the inner radius.
 struct Prediction {
   double error_N = 0.0, predicted_N = 0.0, beyond = 0.0;
   int unit = 0;
@@ -166,8 +166,9 @@ struct Prediction {
 // fold; empty: none, the errors are those of the trend.
 std::vector<Prediction> predictions_of(const ResidualRows& rows, const ModelData& common,
                                        const std::vector<CorrectionPtr>& corrections);
-// Fits the error bound of a model (models/METHOD.md, Bound). `common`: with the JND and the largest force. None with
-// fewer than 50 predictions or two units: one does not show how the next one differs.
+// Fits the error bound of a model (models/METHOD.md, Bound). `common`: with the trend, the JND, the largest force and
+// the offsets of the recordings, which are the units where there are several. None with fewer than 50 predictions or
+// two units: one does not show how the next one differs.
 std::optional<ErrorBound> fit_bound(const std::vector<Prediction>& predictions, const ModelData& common);
 
 struct CorrectionChoice {

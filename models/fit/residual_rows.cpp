@@ -124,7 +124,7 @@ double factor_of(std::vector<Prediction> rows, const ErrorBound& bound) {
   const auto quantile_of_first = [&](std::size_t count) {
     std::vector<double> ratios;
     for (std::size_t i = 0; i < count; ++i)
-      ratios.push_back(rows[i].error_N / bound.at(rows[i].predicted_N, rows[i].beyond));
+      ratios.push_back(std::abs(rows[i].error_N) / bound.at(rows[i].predicted_N, rows[i].beyond));
     return nth_smallest(std::move(ratios), conformal_rank(count, 0.95));
   };
   double factor = quantile_of_first(rows.size());
@@ -136,6 +136,32 @@ double factor_of(std::vector<Prediction> rows, const ErrorBound& bound) {
     factor = std::max(factor, quantile_of_first(tenth));
   }
   return factor;
+}
+
+// The standard error of the surface of the next recording; the errors keep what it does not explain. Of a single
+// recording it is that of its own surface. Each of K recordings is moved by the x_k with the least squares of error /
+// J, at most half the depth; x_k (K - 1) / K are the distances of the surfaces from their mean.
+double register_surfaces(std::map<int, std::vector<Prediction>>& units, const ModelData& common) {
+  const std::vector<RecordingOffset>& offsets = common.provenance.offsets;
+  const double own_m = offsets.empty() ? 0.0 : offsets.front().standard_error_m;
+  if (offsets.size() < 2) return std::isfinite(own_m) ? own_m : 0.0;
+  double squares = 0.0;
+  for (auto& [unit, rows] : units) {
+    const auto error_N = [&](const Prediction& one, double by_m) {
+      return one.error_N + common.trend.moved_N(one.depth_m, by_m);
+    };
+    const auto cost = [&, &rows = rows](double by_m) {
+      double sum = 0.0;
+      for (const Prediction& one : rows) sum += std::pow(error_N(one, by_m) / common.jnd.at(one.predicted_N), 2);
+      return BlockCosts{sum};
+    };
+    const double most_m = 0.5 * common.trend.reference_depth_m;
+    const double by_m = estimate_offset(cost, {-most_m, most_m, 0.05 * most_m, kFinest_m}).minimum_at;
+    for (Prediction& one : rows) one.error_N = error_N(one, by_m);
+    squares += by_m * by_m;
+  }
+  const auto count = static_cast<double>(units.size());
+  return std::sqrt(squares * (count * count - 1.0) / std::pow(count, 3));
 }
 
 }  // namespace
@@ -191,8 +217,7 @@ ResidualRows residual_rows(const ModelData& common, const TrendColumns& columns,
   const auto n = static_cast<Eigen::Index>(order.size());
   ResidualRows out;
   out.points.resize(features.rows(), n);
-  for (Eigen::VectorXd* values :
-       {&out.force_N, &out.depth_m, &out.row_scale, &out.speed_m_per_s, &out.moved_N, &out.moved_error_N})
+  for (Eigen::VectorXd* values : {&out.force_N, &out.depth_m, &out.row_scale, &out.speed_m_per_s, &out.moved_N})
     values->resize(n);
   out.trend_N.resize(n, left_out_trends.cols());
   for (Eigen::Index k = 0; k < n; ++k) {
@@ -209,12 +234,7 @@ ResidualRows residual_rows(const ModelData& common, const TrendColumns& columns,
     out.speed_m_per_s(k) = std::abs(columns.samples().rows[sample].motion.velocity_m_per_s);
     const RecordingOffset& offset =
         columns.samples().offsets[static_cast<std::size_t>(columns.samples().recording[sample])];
-    const auto elastic_N = [&](double by_m) {
-      return common.trend.elastic.at(std::max(0.0, out.depth_m(k) + by_m) / common.trend.reference_depth_m);
-    };
-    out.moved_N(k) = elastic_N(offset.offset_m) - elastic_N(0.0) - offset.force_zero_N;
-    const bool known = std::isfinite(offset.standard_error_m);
-    out.moved_error_N(k) = known ? elastic_N(offset.standard_error_m) - elastic_N(0.0) : 0.0;
+    out.moved_N(k) = common.trend.moved_N(out.depth_m(k), offset.offset_m) - offset.force_zero_N;
     out.no_force.push_back(std::abs(out.force_N(k)) <= no_force_N ? 1 : 0);
   }
   out.find_distances();
@@ -234,9 +254,9 @@ std::vector<Prediction> predictions_of(const ResidualRows& rows, const ModelData
       correction_N = corrections[static_cast<std::size_t>(rows.fold[i])]->evaluate(point.data());
     }
     const double force_N = rows.predicted_N(common, i, inner_radius, correction_N);
-    const double error_N = std::abs(force_N + rows.moved_N(row) - rows.force_N(row)) + rows.moved_error_N(row);
-    predictions.push_back({error_N, force_N, std::max(0.0, rows.distance[i] - inner_radius), rows.unit[i],
-                           rows.depth_m(row), rows.speed_m_per_s(row)});
+    predictions.push_back({force_N + rows.moved_N(row) - rows.force_N(row), force_N,
+                           std::max(0.0, rows.distance[i] - inner_radius), rows.unit[i], rows.depth_m(row),
+                           rows.speed_m_per_s(row)});
   }
   return predictions;
 }
@@ -245,20 +265,22 @@ std::optional<ErrorBound> fit_bound(const std::vector<Prediction>& predictions, 
   std::map<int, std::vector<Prediction>> units;
   for (const Prediction& one : predictions) units[one.unit].push_back(one);
   if (predictions.size() < 50 || units.size() < 2) return std::nullopt;
+  const double surface_error_m = register_surfaces(units, common);
   Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(3, 3);
   Eigen::VectorXd right = Eigen::VectorXd::Zero(3);
-  for (const Prediction& one : predictions) {
-    const double scale = 1.0 / common.jnd.at(one.predicted_N);
-    const Eigen::Vector3d row = scale * Eigen::Vector3d(1.0, std::abs(one.predicted_N), one.beyond);
-    gram += row * row.transpose();
-    right += row * scale * one.error_N;
-  }
+  for (const auto& [unit, rows] : units)
+    for (const Prediction& one : rows) {
+      const double scale = 1.0 / common.jnd.at(one.predicted_N);
+      const Eigen::Vector3d row = scale * Eigen::Vector3d(1.0, std::abs(one.predicted_N), one.beyond);
+      gram += row * row.transpose();
+      right += row * scale * std::abs(one.error_N);
+    }
   const Eigen::VectorXd shape = solve_non_negative(gram, right);
   // One unit of distance beyond the data nothing is known but the range of the force: the mean error of a prediction in
   // its middle is a quarter of it, and the largest error of any prediction all of it.
   const double least_per_distance_N = 0.25 * common.largest_force_N;
   // Above 0, so that the factor enlarges it.
-  ErrorBound bound{std::max(shape(0), 1e-3), shape(1), std::max(shape(2), least_per_distance_N)};
+  ErrorBound bound{std::max(shape(0), 1e-3), shape(1), std::max(shape(2), least_per_distance_N), surface_error_m};
   std::vector<double> factors;
   for (auto& [unit, rows] : units) factors.push_back(factor_of(std::move(rows), bound));
   const double factor = nth_smallest(factors, conformal_rank(factors.size(), 0.9));

@@ -74,13 +74,9 @@ double Trend::at(const double* features, const TrendInputs& inputs) const noexce
 
 namespace {
 
-// Radii in the normalised feature space, where a feature's spread is about 1. The inner one is the smallest of those
-// that a fit selects from. On held-out recordings of six materials a correction is
-// better than the trend up to about 0.2 from the data and worse beyond.
-constexpr double kInnerRadius = 0.08;
-constexpr double kOuterToInner = 3.0;
-constexpr double kFirstCoverRadius = 0.03;
-constexpr double kCoverGrowth = 1.25;
+// In the normalised feature space, where a feature's spread is about 1: as fine as the pieces of the elastic response.
+constexpr double kFirstCoverRadius = 1.0 / kPieces;
+constexpr double kCoverGrowth = 1.25;  // a cover is at most a quarter coarser than its points allow
 
 std::vector<Eigen::Index> thinned(const Eigen::MatrixXd& sites, double radius) {
   std::vector<Eigen::Index> kept;
@@ -124,9 +120,10 @@ DomainCover make_cover(const Eigen::MatrixXd& sites) {
   while ((kept = thinned(sites, radius)).empty()) radius *= kCoverGrowth;
   DomainCover cover;
   cover.points = sites(Eigen::all, kept);
-  // Every site has full trust, however much the cover was thinned.
-  cover.inner_radius = std::max(kInnerRadius, 1.5 * radius);
-  cover.outer_radius = kOuterToInner * cover.inner_radius;
+  // Full trust within a radius of every site, each of which is within a radius of a point of the cover. It ends at the
+  // next radius that a fit selects from.
+  cover.inner_radius = 2.0 * radius;
+  cover.outer_radius = 2.0 * cover.inner_radius;
   return cover;
 }
 
@@ -183,8 +180,8 @@ double trust_at_distance(double distance, double inner_radius, double outer_radi
 
 namespace {
 
-// A press deeper than the deepest recorded one by this share is out of the domain, whatever the radius of the guard,
-// which is selected by the gain of the correction away from the data.
+// A press deeper than the deepest recorded one by this share is out of the domain, whatever the radius of the guard: a
+// ball on a soft solid (Hertz 1881, 1.15^1.5 = 1.23) has then reached kForceMargin.
 constexpr double kDeeper = 0.15;
 // A part of the force above this multiple of the largest forces in the file indicates a damaged number: the model would
 // jump between 0 and its limit. The parts of a fitted model are far smaller.
@@ -273,7 +270,8 @@ void FittedModel::assess(const double* features, ForceEstimate& estimate) const 
   estimate.out_of_domain = guard_.trust_at(squared_distance) < 0.5 || features[depth_] > deepest_m_;
   if (!data_.error_bound) return;
   const double beyond = std::sqrt(squared_distance) - data_.cover.inner_radius;
-  estimate.predicted_error_N = data_.error_bound->at(estimate.force_N, beyond);
+  estimate.predicted_error_N = data_.error_bound->at(estimate.force_N, beyond) +
+                               data_.trend.moved_N(features[depth_], data_.error_bound->surface_error_m);
 }
 
 }  // namespace palpate

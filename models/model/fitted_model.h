@@ -97,6 +97,10 @@ struct Trend {
   double at(const double* features, const std::vector<FeatureSpec>& specs) const noexcept {
     return at(features, TrendInputs(specs));
   }
+  // The change of the elastic response where the surface is offset, E(d + by) - E(d).
+  double moved_N(double depth_m, double by_m) const noexcept {
+    return elastic.at(std::max(0.0, depth_m + by_m) / reference_depth_m) - elastic.at(depth_m / reference_depth_m);
+  }
 };
 
 // The distance of a feature vector from the data of a model, and the trust in the correction there. The domain is the
@@ -180,15 +184,17 @@ struct Provenance {
 };
 
 // The bound on the error of a model's force where no force is measured, at 95 %:
-//   bound(x) = floor + per_force |f(x)| + per_distance max(0, distance(x) - inner radius) >= |model - material|
-// distance: to the nearest training data in the normalised feature space. The coefficients are fitted
+//   bound(x) = floor + per_force |f(x)| + per_distance max(0, distance(x) - inner radius) + E(d + surface error) - E(d)
+//   >= |model - material|
+// distance: to the nearest training data in the normalised feature space. The first three coefficients are fitted
 // to errors of whole recordings or presses that were left out, and scaled by a quantile over these
 // (models/fit/fit.h). Sources: Vovk (2015), "Cross-conformal predictors"; Lei, G'Sell, Rinaldo, Tibshirani &
 // Wasserman (2018), section 5.2 (locally weighted).
 struct ErrorBound {
   double floor_N = 0.0, per_force = 0.0, per_distance_N = 0.0;
+  double surface_error_m = 0.0;  // standard error of the surface of the next recording
 
-  // `beyond`: distance - inner radius. An infinite distance gives an infinite bound.
+  // Without the last term. `beyond`: distance - inner radius. An infinite distance gives an infinite bound.
   double at(double force_N, double beyond) const noexcept {
     return floor_N + per_force * std::abs(force_N) + per_distance_N * std::max(0.0, beyond);
   }

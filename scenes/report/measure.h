@@ -94,7 +94,7 @@ TestCurves test_curves(const Recording& recording, const std::vector<ModelPointe
 // trend, and the trend corrected by greedy.
 bool is_main(const ModelPlan& plan);
 
-// Methods that draw random numbers are fitted with this number of seeds.
+// Methods that draw random numbers (methods.h, kTakesSeed) are fitted with this number of seeds.
 inline constexpr std::uint64_t kSeeds = 5;
 // A method that selects centres is fitted with the number in its plan, 100, and with that of these numbers that
 // cross-validation of the training recordings selects: the one with the lowest error of random centres.

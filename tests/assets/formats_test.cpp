@@ -55,8 +55,7 @@ TEST(Formats, TheSchemaRefusesWhatTheReaderRefuses) {
 
 TEST(Formats, TheExampleRecordingIsOneAndSaysThatItIsNoRealMaterial) {
   const std::string path = PALPATE_SOURCE_DIR "/assets/examples/silicone_press.csv";
-  const auto recording = read_recording(path);
-  ASSERT_TRUE(recording.ok()) << recording.error().message;
+  const Result recording = test::must(read_recording(path));
   const std::string text = test::read_text(path);
   EXPECT_LT(text.size(), 200000U);
   EXPECT_TRUE(test::has_parts(text.substr(0, text.find("time_s")), {"palpate synth"}));

@@ -149,6 +149,7 @@ void describe_model(auto& file, ModelData& data) {
       file.value("floor_N", bound.floor_N, kNotNegative);
       file.value("per_force", bound.per_force, kNotNegative);
       file.value("per_distance_N", bound.per_distance_N, kNotNegative);
+      describe_unless_0(file, "surface_error_m", bound.surface_error_m, kNotNegative);
     });
   }
   file.correction(data.correction, dimension);

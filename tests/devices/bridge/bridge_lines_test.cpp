@@ -163,8 +163,7 @@ TEST(BridgeLines, FaultsOfSocketsAndSerialLinesTakeTheForceAway) {
 TEST(BridgeLines, APortThatVanishesAndReturnsIsUsedAgain) {
   const test::TemporaryFolder folder;
   auto line = std::make_unique<Line>("unix", folder, "die");
-  auto device = line->open();
-  ASSERT_TRUE(device.ok());
+  Result device = test::must(line->open());
   SpringSession session(std::move(*device));
   ASSERT_TRUE(test::wait_for([&] { return (session.loop().newest().device.faults & device_fault::kUnplugged) != 0; }));
   line.reset();
@@ -185,8 +184,7 @@ TEST(BridgeLines, AChildProgramEndsWithItsDevice) {
     return false;
   };
   {
-    auto device = line.open();
-    ASSERT_TRUE(device.ok());
+    Result device = test::must(line.open());
     EXPECT_TRUE(running());
   }
   EXPECT_FALSE(running());
@@ -216,8 +214,7 @@ TEST(BridgeLines, AProgramAppliesTheLastForceOf0BeforeItIsEnded) {
     SCOPED_TRACE(start);
     const test::TemporaryFolder folder;
     const std::string program = logging_program(folder, start);
-    auto device = open_bridge("exec:python3 " + program);
-    ASSERT_TRUE(device.ok());
+    Result device = test::must(open_bridge("exec:python3 " + program));
     {
       SpringSession session(std::move(*device));
       ASSERT_TRUE(test::wait_for([&] { return session.loop().newest().rendered_N > 2.0; }));
@@ -240,8 +237,7 @@ TEST(BridgeLines, AProgramThatIgnoresTheEndOfItsInputIsStillEnded) {
   std::string text = test::read_text(program);
   text.replace(text.find("                return\n"), 23, "                break\n");
   folder.with_file("logging.py", text);
-  auto device = open_bridge("exec:python3 " + program);
-  ASSERT_TRUE(device.ok());
+  Result device = test::must(open_bridge("exec:python3 " + program));
   const double start_s = steady_now_s();
   device->reset();
   EXPECT_LT(steady_now_s() - start_s, 3.0);

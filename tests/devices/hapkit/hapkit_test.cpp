@@ -144,8 +144,7 @@ TEST(Hapkit, ItsRecordingIsFittedReplayedAndRendered) {
   std::printf("within the JND %.4f, 99 %% up to %.2f JND\n", judged["within_jnd"].get<double>(),
               judged["p99_error_over_jnd"].get<double>());
   EXPECT_GT(judged["within_jnd"].get<double>(), 0.98);
-  const auto model = load_model(folder.file("press.json"));
-  ASSERT_TRUE(model.ok()) << model.error().message;
+  const Result model = test::must(load_model(folder.file("press.json")));
   expect_stop_after_kill(*model);
 }
 

@@ -243,8 +243,7 @@ TEST(DeviceEndpoint, EveryFaultTakesTheForceAwayUntilItEnds) {
 // Uses the shipped calibration. devices/README.md contains the table that this test prints.
 TEST(BridgeEndpoint, EveryFaultRemovesTheForceUntilTheTimeInTheReadme) {
   const std::string source = PALPATE_SOURCE_DIR;
-  const auto calibration = read_calibration(source + "/assets/devices", kBridgeProtocol);
-  ASSERT_TRUE(calibration.ok());
+  const Result calibration = test::must(read_calibration(source + "/assets/devices", kBridgeProtocol));
   std::string table = "| what happens | force 0 after [ms] | comes back after its end [ms] |\n|---|---:|---:|\n";
   for (const Injection& injection : injections()) {
     if (injection.bridge == 0) continue;

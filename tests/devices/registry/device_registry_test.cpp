@@ -56,8 +56,7 @@ TEST(DeviceRegistry, OpensEveryDeviceThatItListsAsUsable) {
 
 TEST(DeviceRegistry, AutoPrefersAHapticDevice) {
   test::FakeDeviceBus bus;
-  auto device = open_device("auto", request_with(bus));
-  ASSERT_TRUE(device.ok());
+  Result device = test::must(open_device("auto", request_with(bus)));
   EXPECT_EQ((*device)->name(), "hid");
   EXPECT_TRUE(test::has_parts((*device)->note(), {"OpenFFBoard", "FFBoard", "/dev/hidraw7"}));
   EXPECT_EQ((*device)->limits().largest_N, 5.0);
@@ -85,8 +84,7 @@ TEST(DeviceRegistry, AutoNotesTheFallbackAndItsReason) {
       {request_with(buses.mouse), {"simulated hand", "mouse", "SpaceMouse"}},
       {without_calibrations, {"PALPATE_ASSETS", "simulated hand"}}};
   for (const auto& [request, parts] : notes) {
-    auto device = open_device("auto", request);
-    ASSERT_TRUE(device.ok());
+    Result device = test::must(open_device("auto", request));
     EXPECT_EQ((*device)->name(), "auto");
     EXPECT_TRUE(test::has_parts((*device)->note(), parts));
   }
@@ -107,8 +105,7 @@ const std::vector<DeviceEntry>& entries() {
 }
 
 TEST(OwnDevice, IsOpenedByItsNameAndRenderedOn) {
-  auto device = open_device("own:4", {}, entries());
-  ASSERT_TRUE(device.ok()) << device.error().message;
+  Result device = test::must(open_device("own:4", {}, entries()));
   ModelSlot<LiveModels> slot;
   LiveTick live(**device, slot);
   slot.publish(std::make_unique<LiveModels>(1, (*device)->sensor(), std::vector{test::spring(500.0)}));

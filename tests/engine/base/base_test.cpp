@@ -224,8 +224,7 @@ TEST(AtomicFile, AFileThatIsReplacedKeepsItsPermissions) {
 TEST(AtomicFile, LeavesNothingWithoutCommit) {
   const TemporaryFolder folder;
   {
-    auto file = AtomicFile::create(folder.file("out"), false);
-    ASSERT_TRUE(file.ok());
+    Result file = test::must(AtomicFile::create(folder.file("out"), false));
     file->write(kMegabyte);
   }
   EXPECT_TRUE(folder.entries().empty());
@@ -243,8 +242,7 @@ TEST(AtomicFile, RefusesAnExistingFile) {
 
 TEST(AtomicFile, RefusesAFileThatAppearedWhileItWasWriting) {
   const TemporaryFolder folder;
-  auto file = AtomicFile::create(folder.file("out"), false);
-  ASSERT_TRUE(file.ok());
+  Result file = test::must(AtomicFile::create(folder.file("out"), false));
   file->write("ours");
   folder.with_file("out", "theirs");
   const Status status = file->commit();

@@ -58,8 +58,7 @@ TEST(Recording, NamesThePlaceOfAFaultAndSaysWhatToDo) {
 
 TEST(Recording, ReadsRowsAndItsNameFromTheFile) {
   const TemporaryFolder folder;
-  const auto recording = read_recording(folder.with_file("skin.a.csv", test::good_recording()));
-  ASSERT_TRUE(recording.ok()) << recording.error().message;
+  const Result recording = test::must(read_recording(folder.with_file("skin.a.csv", test::good_recording())));
   EXPECT_EQ(recording->name, "skin.a");
   EXPECT_FALSE(recording->columns.velocity);
   EXPECT_FALSE(recording->columns.acceleration);
@@ -165,8 +164,7 @@ void expect_round_trip(const Recording& recording) {
   const std::string path = folder.file("rec.csv");
   const Status written = write_recording(path, recording, {"a rig", "two\nlines"}, false);
   ASSERT_TRUE(written.ok()) << written.error().message;
-  const auto read = read_recording(path);
-  ASSERT_TRUE(read.ok()) << read.error().message;
+  const Result read = test::must(read_recording(path));
   EXPECT_EQ(read->name, "rec");
   expect_same_bits(*read, recording);
   EXPECT_EQ(folder.entries(), std::vector<std::string>{"rec.csv"});
@@ -218,8 +216,7 @@ TEST(RecordingWriter, GivesTheSameFileRowByRowAndLeavesOutWhatIsRefused) {
   const TemporaryFolder folder;
   const Recording recording = random_recording(5000, {true, false});
   ASSERT_TRUE(write_recording(folder.file("whole.csv"), recording, {"a comment"}, false).ok());
-  auto writer = RecordingWriter::create(folder.file("rows.csv"), recording.columns, {"a comment"}, false);
-  ASSERT_TRUE(writer.ok());
+  Result writer = test::must(RecordingWriter::create(folder.file("rows.csv"), recording.columns, {"a comment"}, false));
   for (const RecordingRow& row : recording.rows) {
     ASSERT_TRUE(writer->add(row));
     ASSERT_FALSE(writer->add(row)) << "the same time again";
@@ -240,8 +237,7 @@ Result<RecordingWriter> writer_in_part(const test::TemporaryFolder& folder, bool
 TEST(RecordingWriter, ANameThatIsBeingWrittenIsRefusedAtTheStart) {
   const test::TemporaryFolder folder;
   {
-    const auto first = writer_in_part(folder, false);
-    ASSERT_TRUE(first.ok());
+    const Result first = test::must(writer_in_part(folder, false));
     for (const bool overwrite : {false, true}) {
       EXPECT_EQ(
           writer_in_part(folder, overwrite).error().message,

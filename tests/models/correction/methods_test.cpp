@@ -32,8 +32,7 @@ TEST(Methods, StartFromTheBaseThatTheyAreGiven) {
   const auto direct = fit_correction(kDirectMethod, task);
   ASSERT_TRUE(alone.ok() && direct.ok());
   task.base = direct->correction;
-  const auto from_direct = fit_correction(kVoxelMethod, task);
-  ASSERT_TRUE(from_direct.ok());
+  const Result from_direct = test::must(fit_correction(kVoxelMethod, task));
   EXPECT_EQ(grid_of(from_direct->correction)->values_N, grid_of(alone->correction)->values_N);
   task.base = fit_correction(kRandomMethod, task)->correction;
   EXPECT_NE(grid_of(fit_correction(kVoxelMethod, task)->correction)->values_N, grid_of(alone->correction)->values_N);
@@ -75,8 +74,7 @@ TEST(Methods, DegenerateDataHaveADefinedOutcome) {
         MethodTask task{sites, jnd_N};
         task.centres = centres;
         task.candidates = candidates;
-        const auto fitted = fit_correction(method, task);
-        ASSERT_TRUE(fitted.ok());
+        const Result fitted = test::must(fit_correction(method, task));
         EXPECT_TRUE(rbf_of(fitted->correction)->weights.allFinite());
         const int used = fitted->correction->size();
         EXPECT_LE(used, std::min(centres, distinct));
@@ -107,8 +105,7 @@ TEST(Methods, RefuseWrongSitesAndCanBeInterrupted) {
 TEST(FitRandom, CentresAreDistinctSitesThatDependOnTheSeed) {
   Sites sites = smooth_sites(3, 60, 0.0, 1);
   sites.points.rightCols(30) = sites.points.leftCols(30);
-  const auto fitted = test::fit_random(sites, {.centres = 30});
-  ASSERT_TRUE(fitted.ok());
+  const Result fitted = test::must(test::fit_random(sites, {.centres = 30}));
   const Eigen::MatrixXd& centres = fitted->centres;
   for (int j = 0; j < 30; ++j) {
     EXPECT_EQ((sites.points.colwise() - centres.col(j)).colwise().norm().minCoeff(), 0.0);
@@ -184,8 +181,7 @@ TEST(FitGreedy, AllSitesEqualsBruteForceForwardSelection) {
   Sites sites = smooth_sites(2, 60, 0.05, 1);
   for (const KernelKind kernel : kKernelKinds) {
     sites.kernel = kernel;
-    const auto fitted = fit_greedy(sites, {.centres = 12, .candidates = 0});
-    ASSERT_TRUE(fitted.ok());
+    const Result fitted = test::must(fit_greedy(sites, {.centres = 12, .candidates = 0}));
     EXPECT_EQ(fitted->centres, brute_force_centres(sites, kernel, 12)) << kernel_name(kernel);
   }
 }
@@ -271,8 +267,7 @@ TEST(FitKdTree, EqualsAFullRefitAfterEverySplit) {
     const Eigen::VectorXd jnd_N = jnd_line_of(sites);
     for (const KernelKind kernel : kKernelKinds) {
       sites.kernel = kernel;
-      const auto fitted = fit_kdtree(sites, jnd_N, {.centres = 25});
-      ASSERT_TRUE(fitted.ok());
+      const Result fitted = test::must(fit_kdtree(sites, jnd_N, {.centres = 25}));
       EXPECT_EQ(fitted->centres, plain_centres(sites, jnd_N, kernel, 25)) << kernel_name(kernel);
     }
   }

@@ -139,7 +139,7 @@ TEST(PlanOptions, RefuseWhatTheMethodDoesNotTake) {
        "kernel: trend does not take this option, only direct, voxel, random, kdtree, greedy, trend+direct, "
        "trend+voxel, trend+random, trend+kdtree, trend+greedy; leave it out"},
       {"method=direct seed=3",
-       "seed: direct does not take this option, only random, greedy, trend+random, "
+       "seed: direct does not take this option, only random, kdtree, greedy, trend+random, trend+kdtree, "
        "trend+greedy; leave it out"},
   };
   for (const auto& [text, message] : wrong) EXPECT_EQ(message_of(parse_plan_options(text)), message);

@@ -8,6 +8,7 @@
 
 #include "models/correction/algebra.h"
 #include "tests/support/exact_samples.h"
+#include "tests/support/example_model.h"
 #include "tests/support/message_parts.h"
 #include "tests/support/random_points.h"
 
@@ -151,17 +152,16 @@ TEST(FitBound, CoversNewUnitsAndGrowsAwayFromTheData) {
       (unit % 2 == 0 ? past : future).push_back({error_N, force_N, 0.0, unit});
     }
   }
-  const auto bound = bound_of(past);
-  ASSERT_TRUE(bound.has_value());
+  const ErrorBound bound = bound_of(past).value();
   int covered = 0;
   for (std::size_t unit = 0; unit < 40; ++unit) {
     const auto first = future.begin() + static_cast<std::ptrdiff_t>(100 * unit);
-    const auto within = [&](const Prediction& one) { return one.error_N <= bound->at(one.predicted_N, 0.0); };
+    const auto within = [&](const Prediction& one) { return one.error_N <= bound.at(one.predicted_N, 0.0); };
     covered += std::count_if(first, first + 100, within) >= 95 ? 1 : 0;
   }
   // Nine of ten are expected; the tolerance is three standard deviations.
   EXPECT_GE(covered, 36 - 6);
-  EXPECT_GE(bound->at(1.0, 1.0), bound->at(1.0, 0.0) + 1.25) << "a quarter of the largest force";
+  EXPECT_GE(bound.at(1.0, 1.0), bound.at(1.0, 0.0) + 1.25) << "a quarter of the largest force";
 }
 
 // One row of 50, too few for the 95 % quantile of all, has an error of 1 N: in no phase, or first, or deep, or fast.
@@ -179,14 +179,32 @@ TEST(FitBound, HoldsInEveryPhase) {
   }
 }
 
-// Errors of 3 N for each unit of distance beyond the inner radius, 0.1; a recording that as recorded reads 0.2 N more,
-// with an uncertainty of 0.1 N.
+// Three recordings whose surfaces differ by 1 mm, in a material of 1 N/mm: nothing else is left, and the next surface
+// has the error 1 mm sqrt(2 x 8 / 27). A single one has that of its own surface.
+TEST(FitBound, GrowsByTheErrorOfTheSurface) {
+  std::vector<Prediction> predictions;
+  for (int i = 0; i < 150; ++i) predictions.push_back({i / 50 - 1.0, 3.0, 0.0, i / 50, 4e-3});
+  ModelData common;
+  common.largest_force_N = 5.0;
+  common.trend.reference_depth_m = 8e-3;
+  common.trend.elastic = test::even_spline(8.0, 8.0);
+  common.provenance.offsets.resize(3);
+  const ErrorBound several = fit_bound(predictions, common).value();
+  EXPECT_NEAR(several.surface_error_m, 1e-3 * std::sqrt(16.0 / 27.0), 1e-5);
+  EXPECT_LT(several.at(3.0, 0.0), 0.02);
+  common.provenance.offsets = {{"press", 0.0, 2e-4}};
+  const ErrorBound one = fit_bound(predictions, common).value();
+  EXPECT_EQ(one.surface_error_m, 2e-4);
+  EXPECT_GT(one.at(3.0, 0.0), 0.9);
+}
+
+// Errors of 3 N for each unit of distance beyond the inner radius, 0.1; a recording that as recorded reads 0.2 N more.
 TEST(FitBound, DistancesCountFromTheInnerRadiusAndForcesAsRecorded) {
   constexpr Eigen::Index kRows = 200;
   ResidualRows rows;
   rows.points = Eigen::MatrixXd::Zero(1, kRows);
   rows.force_N = Eigen::VectorXd::Constant(kRows, 2.0);
-  rows.depth_m = rows.speed_m_per_s = rows.moved_N = rows.moved_error_N = Eigen::VectorXd::Zero(kRows);
+  rows.depth_m = rows.speed_m_per_s = rows.moved_N = Eigen::VectorXd::Zero(kRows);
   rows.trend_N.resize(kRows, 2);
   for (Eigen::Index i = 0; i < kRows; ++i) {
     rows.fold.push_back(i < kRows / 2 ? 0 : 1);
@@ -197,13 +215,11 @@ TEST(FitBound, DistancesCountFromTheInnerRadiusAndForcesAsRecorded) {
   ModelData common;
   common.cover = {{}, 0.1, 0.3};
   common.largest_force_N = 5.0;
-  const auto bound = fit_bound(predictions_of(rows, common, {}), common);
-  ASSERT_TRUE(bound.has_value());
-  EXPECT_NEAR(bound->per_distance_N, 3.0, 0.1);
-  EXPECT_LT(bound->at(2.0, 0.0), 0.05);
+  const ErrorBound bound = fit_bound(predictions_of(rows, common, {}), common).value();
+  EXPECT_NEAR(bound.per_distance_N, 3.0, 0.1);
+  EXPECT_LT(bound.at(2.0, 0.0), 0.05);
   rows.moved_N.tail(kRows / 2).setConstant(-0.2);
-  rows.moved_error_N.tail(kRows / 2).setConstant(0.1);
-  EXPECT_NEAR(predictions_of(rows, common, {}).back().error_N - predictions_of(rows, common, {})[99].error_N, 0.3,
+  EXPECT_NEAR(predictions_of(rows, common, {}).back().error_N - predictions_of(rows, common, {})[99].error_N, -0.2,
               1e-12);
 }
 

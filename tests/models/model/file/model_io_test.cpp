@@ -55,7 +55,7 @@ TEST(ModelIo, FeaturesWithPartsSplinesSofteningAndTheErrorBoundAreKept) {
   creep.parts[0] = {0.1, 5e-3, drive};
   ModelData data = example_model("greedy", KernelKind::cubic, {FeatureSpec{}, spectrum, stops, creep}, 11);
   data.trend.elastic = test::even_spline(0.1, 1.0 / 3.0);
-  data.error_bound = ErrorBound{0.01, 0.02, 0.3};
+  data.error_bound = ErrorBound{0.01, 0.02, 0.3, 1e-4};
   data.sensor = SensorSpec{30e-6, 1e-6};
   const std::vector<double> memory(memory_size(data.features), 1.0 / 3.0);
   data.ends = {{-1e-3, 4e-3, memory}, {0.0, 0.1, memory}};
@@ -91,8 +91,7 @@ TEST(ModelIo, ForcesAreBitIdenticalAfterLoading) {
   for (const ModelData& data : example_models()) {
     SCOPED_TRACE(data.name);
     ASSERT_TRUE(save_model(folder.file(data.name), data, false).ok());
-    const auto loaded = load_model(folder.file(data.name));
-    ASSERT_TRUE(loaded.ok()) << loaded.error().message;
+    const Result loaded = test::must(load_model(folder.file(data.name)));
     EXPECT_EQ(text_of((*loaded)->data()), text_of(data));  // with all fields
     const FittedModel original(data);
     test::Numbers numbers(99);
