@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "engine/base/parallel.h"
 #include "engine/base/statistics.h"
 #include "engine/base/text.h"
 #include "models/check/check_recording.h"
@@ -168,9 +169,13 @@ Result<CheckedFile> check_recording_file(const std::string& path, const CheckReq
 
 Result<std::vector<CheckedFile>> check_recording_files(const std::vector<std::string>& paths,
                                                        const CheckRequest& request) {
+  std::vector<Result<CheckedFile>> checked(paths.size(), CheckedFile{});
+  parallel_for(static_cast<int>(paths.size()), [&](int i) {
+    const auto at = static_cast<std::size_t>(i);
+    checked[at] = check_recording_file(paths[at], request);
+  });
   std::vector<CheckedFile> files;
-  for (const std::string& path : paths) {
-    auto file = check_recording_file(path, request);
+  for (Result<CheckedFile>& file : checked) {
     if (!file) return file.error();
     files.push_back(std::move(*file));
   }

@@ -3,10 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <memory>
+#include <numeric>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "engine/base/parallel.h"
 #include "models/linear/lapack.h"
@@ -15,15 +18,19 @@
 namespace palpate {
 namespace {
 
-// The 1-norm of a symmetric matrix of which only the lower triangle is set.
-double lower_norm(const Eigen::MatrixXd& lower) {
-  Eigen::VectorXd sums = Eigen::VectorXd::Zero(lower.cols());
-  for (Eigen::Index k = 0; k < lower.cols(); ++k) {
-    const auto below = lower.col(k).tail(lower.rows() - k - 1);
-    sums(k) += std::abs(lower(k, k)) + below.lpNorm<1>();
-    sums.tail(below.size()) += below.cwiseAbs();
+Eigen::VectorXd factor_product(const Eigen::MatrixXd& lower, const Eigen::VectorXd& v) {
+  const Eigen::VectorXd upper = lower.transpose().triangularView<Eigen::Upper>() * v;
+  return lower.triangularView<Eigen::Lower>() * upper;
+}
+
+// The largest eigenvalue by the power method, or with the inverse of `multiply` the inverse of the smallest.
+double largest_eigenvalue(Eigen::Index size, const std::function<void(Eigen::VectorXd&)>& multiply) {
+  Eigen::VectorXd x = Eigen::VectorXd::LinSpaced(size, 1.0, 2.0);
+  for (int step = 0; step < 5; ++step) {
+    x.normalize();
+    multiply(x);
   }
-  return sums.maxCoeff();
+  return x.norm();
 }
 
 }  // namespace
@@ -65,35 +72,130 @@ void ProjectedKernel::project_rows(MatrixRef matrix) const {
   multiply(along, false, q_, true, -1.0, 1.0, matrix);
 }
 
+void ProjectedKernel::entries(const std::vector<Eigen::Index>& sites, Eigen::Index first, const Eigen::MatrixXd& update,
+                              MatrixRef out) const {
+  const Eigen::Index rows = out.rows();
+  kernel_matrix(kernel_, arrays_, points_(Eigen::all, sites), out, first);
+  out.array().colwise() *= scale_.segment(first, rows).array();
+  out.array().rowwise() *= definiteness_sign(kernel_) * scale_(sites).transpose().array();
+  multiply(q_.middleRows(first, rows), false, update(sites, Eigen::all), true, -1.0, 1.0, out);
+  multiply(update.middleRows(first, rows), false, q_(sites, Eigen::all), true, -1.0, 1.0, out);
+}
+
 Eigen::MatrixXd ProjectedKernel::matrix(double fill, double smoothing) const {
-  constexpr Eigen::Index kBlock = 64;  // columns at a time; a multiple of 8
   const Eigen::Index count = points_.cols();
-  const auto blocks = static_cast<int>((count + kBlock - 1) / kBlock);
   const Eigen::MatrixXd update = half_update_ - 0.5 * fill * q_;
   Eigen::MatrixXd matrix(count, count);
   const BlasThreads one_thread(1);
-  parallel_for(blocks, [&](int block) {
-    const Eigen::Index first = block * kBlock, columns = std::min(kBlock, count - first), rows = count - first;
-    auto part = matrix.block(first, first, rows, columns);
-    kernel_matrix(kernel_, arrays_, points_.middleCols(first, columns), part, first);
-    part.array().colwise() *= scale_.tail(rows).array();
-    part.array().rowwise() *= definiteness_sign(kernel_) * scale_.segment(first, columns).transpose().array();
-    multiply(q_.bottomRows(rows), false, update.middleRows(first, columns), true, -1.0, 1.0, part);
-    multiply(update.bottomRows(rows), false, q_.middleRows(first, columns), true, -1.0, 1.0, part);
+  parallel_for(static_cast<int>((count + kBlock - 1) / kBlock), [&](int block) {
+    const Eigen::Index first = block * kBlock;
+    std::vector<Eigen::Index> sites(static_cast<std::size_t>(std::min(kBlock, count - first)));
+    std::iota(sites.begin(), sites.end(), first);
+    entries(sites, first, update, matrix.block(first, first, count - first, static_cast<Eigen::Index>(sites.size())));
   });
   matrix.diagonal().array() += smoothing;
   return matrix;
 }
 
-std::optional<ProjectedKernel::Factor> ProjectedKernel::cholesky(double smoothing, const FitControl& control) const {
+Eigen::MatrixXd ProjectedKernel::low_rank(double smoothing) const {
+  // A trace of the rest of 64 times the smoothing takes some 12 steps, 40 times that as long as the whole factor.
+  const double enough = 64.0 * smoothing;
+  const Eigen::Index count = points_.cols(), most = count / 8;
+  const auto for_rows = [&](const auto& work) {
+    parallel_for(static_cast<int>((count + kBlockRows - 1) / kBlockRows),
+                 [&](int part) { work(part * kBlockRows, std::min(kBlockRows, count - part * kBlockRows)); });
+  };
+  Eigen::MatrixXd factor(count, most + kBlock), fresh(count, kBlock);
+  Eigen::VectorXd rest = -2.0 * q_.cwiseProduct(half_update_).rowwise().sum();  // of the diagonal, which is 0 in K
+  std::vector<Eigen::Index> order(static_cast<std::size_t>(count));
+  std::iota(order.begin(), order.end(), Eigen::Index{0});
+  Eigen::Index rank = 0;
+  while (rank < most && rest.sum() > enough) {
+    std::ranges::nth_element(order, order.begin() + kBlock, std::ranges::greater{},
+                             [&](Eigen::Index site) { return std::pair(rest(site), site); });
+    const std::vector<Eigen::Index> candidates(order.begin(), order.begin() + kBlock);
+    const Eigen::MatrixXd before = factor(candidates, Eigen::seqN(0, rank));
+    for_rows([&](Eigen::Index first, Eigen::Index rows) {
+      entries(candidates, first, half_update_, fresh.middleRows(first, rows));
+      multiply(factor.block(first, 0, rows, rank), false, before, true, -1.0, 1.0, fresh.middleRows(first, rows));
+    });
+    // The candidates that are still half as far from the others before them as the first.
+    Eigen::MatrixXd own = fresh(candidates, Eigen::all);
+    const std::vector<int> pivots = cholesky_pivots(own, 0.5 * own.diagonal().maxCoeff());
+    const auto added = static_cast<Eigen::Index>(pivots.size());
+    if (added == 0) break;
+    for_rows([&](Eigen::Index first, Eigen::Index rows) {
+      auto part = factor.block(first, rank, rows, added);
+      part = fresh(Eigen::seqN(first, rows), pivots);
+      solve_triangle(own.topLeftCorner(added, added), part);
+      rest.segment(first, rows) = (rest.segment(first, rows) - part.rowwise().squaredNorm()).cwiseMax(0.0);
+    });
+    rank += added;
+  }
+  factor.conservativeResize(Eigen::NoChange, rest.sum() < 40.0 * enough ? rank : 0);
+  return factor;
+}
+
+std::optional<ProjectedKernel::Solution> ProjectedKernel::iterate(const Eigen::VectorXd& data, double smoothing,
+                                                                  const FitControl& control) const {
+  // With this residual forces differ from those of a factorisation by less than 1e-9 N, its own error.
+  constexpr double kResidual = 1e-12;
+  constexpr int kMostSteps = 80;
+  const BlasThreads one_thread(1);
+  const Eigen::MatrixXd factor = low_rank(smoothing);
+  if (factor.cols() == 0) return std::nullopt;
+  Eigen::MatrixXd inner(factor.cols(), factor.cols());
+  gram(factor, inner);
+  inner.diagonal().array() += smoothing;
+  if (!cholesky_in_place(inner)) return std::nullopt;
+  Eigen::VectorXd x(factor.cols());
+  const auto of_factor = [&](Eigen::VectorXd& v) { v = factor_product(inner, v); };
+  Solution solution{Eigen::VectorXd::Zero(data.size()), largest_eigenvalue(x.size(), of_factor) / smoothing};
+  Eigen::VectorXd residual = project(data), direction = Eigen::VectorXd::Zero(data.size());
+  const double enough = kResidual * residual.norm();
+  double before = 1.0;
+  for (int step = 0; step < kMostSteps && control.may_continue(); ++step) {
+    if (residual.norm() <= enough) {
+      return solution;
+    }
+    multiply(factor, true, residual, false, 1.0, 0.0, x);
+    cholesky_solve(inner, x);
+    Eigen::VectorXd z = residual;
+    multiply(factor, false, x, false, -1.0, 1.0, z);
+    z = project(z) / smoothing;
+    const double size = residual.dot(z);
+    direction = z + size / before * direction;
+    before = size;
+    const Eigen::VectorXd product = project(multiply_kernel(direction)) + smoothing * direction;
+    const double length = size / direction.dot(product);
+    solution.u += length * direction;
+    residual -= length * product;
+  }
+  return std::nullopt;
+}
+
+std::optional<Eigen::MatrixXd> ProjectedKernel::cholesky(double smoothing, const FitControl& control) const {
   smoothing = std::max(smoothing, smallest_smoothing_);
   for (int attempt = 0; attempt < 8; ++attempt, smoothing *= 10.0) {
-    Factor factor{matrix(mean_eigenvalue_, smoothing)};
-    factor.norm = lower_norm(factor.lower);
-    if (cholesky_in_place(factor.lower, control)) return factor;
+    Eigen::MatrixXd lower = matrix(mean_eigenvalue_, smoothing);
+    if (cholesky_in_place(lower, control)) return lower;
     if (!control.may_continue()) return std::nullopt;
   }
   return std::nullopt;
+}
+
+std::optional<ProjectedKernel::Solution> ProjectedKernel::solve(const Eigen::VectorXd& data, double smoothing,
+                                                                const FitControl& control) const {
+  if (points_.cols() > kFactorisedSites) {
+    if (auto found = iterate(data, std::max(smoothing, smallest_smoothing_), control.at(0.0))) return found;
+  }
+  const BlasThreads threads(thread_count());
+  const auto lower = cholesky(smoothing, control);
+  if (!lower) return std::nullopt;
+  Eigen::VectorXd u = project(data);
+  cholesky_solve(*lower, u);
+  const double largest = largest_eigenvalue(u.size(), [&](Eigen::VectorXd& v) { v = factor_product(*lower, v); });
+  return Solution{project(u), largest * largest_eigenvalue(u.size(), [&](auto& v) { cholesky_solve(*lower, v); })};
 }
 
 namespace {
@@ -163,7 +265,7 @@ FittedCorrection solve_weights(const Sites& sites, const Eigen::MatrixXd& centre
     projected.emplace(sites.kernel, centres, Eigen::VectorXd::Ones(n));
     projected->project_rows(of_sites);
     const auto root = projected->cholesky(0.0);
-    if (root) added = root->lower.transpose().triangularView<Eigen::Upper>();
+    if (root) added = root->transpose().triangularView<Eigen::Upper>();
     added *= std::sqrt(sites.smoothing);
   }
   Eigen::VectorXd unit = Eigen::VectorXd::Ones(stack.cols());
@@ -188,25 +290,20 @@ Result<FittedCorrection> solve_direct(const Sites& sites, const FitControl& cont
     return Error{"a direct fit of " + std::to_string(sites.count()) + " sites is too large, at most " +
                  std::to_string(kMostDirectSites) + "; thin the recording further or use greedy"};
   if (!control.may_continue(0.0)) return interrupted();
-  const BlasThreads threads(thread_count());
   const ProjectedKernel kernel(sites.kernel, sites.points, sites.row_scale);
   if (!control.may_continue(0.1)) return interrupted();
-  const auto factor = kernel.cholesky(sites.smoothing, control.part(0.1, 0.95));
-  if (!factor && !control.may_continue(0.95)) return interrupted();
-  if (!factor) return Error{"the kernel matrix could not be factorised; check the recording for extreme values"};
-  if (!control.may_continue(0.95)) return interrupted();
   const Eigen::VectorXd data = sites.target_N.cwiseProduct(sites.row_scale);
-  Eigen::VectorXd u = kernel.project(data);
-  cholesky_solve(factor->lower, u);
-  u = kernel.project(u);
+  const auto solved = kernel.solve(data, sites.smoothing, control.part(0.1, 0.95));
+  if (!control.may_continue(0.95)) return interrupted();
+  if (!solved) return Error{"the kernel matrix could not be factorised; check the recording for extreme values"};
   // S G d = S f - K u - smoothing u, whose last term is orthogonal to the columns of S G.
-  const Eigen::VectorXd tail = kernel.tail_of(data - kernel.multiply_kernel(u));
+  const Eigen::VectorXd tail = kernel.tail_of(data - kernel.multiply_kernel(solved->u));
   return FittedCorrection{
       std::make_shared<const RbfCorrection>(RbfFunction{
-          sites.kernel, sites.points, definiteness_sign(sites.kernel) * u.cwiseProduct(sites.row_scale), tail}),
+          sites.kernel, sites.points, definiteness_sign(sites.kernel) * solved->u.cwiseProduct(sites.row_scale), tail}),
       {},
       sites.count(),
-      cholesky_condition(factor->lower, factor->norm)};
+      solved->condition_number};
 }
 
 OrthogonalBasis::OrthogonalBasis(const Sites& sites, Eigen::Index more) {

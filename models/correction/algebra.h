@@ -32,11 +32,18 @@ class ProjectedKernel {
   Eigen::MatrixXd matrix(double fill, double smoothing) const;
   // The Cholesky factor of that matrix with the mean eigenvalue as fill. If rounding prevents it, the smoothing is
   // multiplied by ten until the factor exists; none after eight attempts, or if interrupted.
-  struct Factor {
-    Eigen::MatrixXd lower;
-    double norm = 0.0;  // the 1-norm of the matrix
+  std::optional<Eigen::MatrixXd> cholesky(double smoothing, const FitControl& control = {}) const;
+  // u = P u that solves (P K P + smoothing I) u = P data; none as for cholesky().
+  //
+  // Above kFactorisedSites by conjugate gradients, whose preconditioner is (L L^T + smoothing I)^-1 with a partial
+  // Cholesky factor L of P K P: where the smoothing is above most eigenvalues, an eighth of the columns leaves a
+  // remainder that needs 10 to 50 steps of N^2 kernels. Otherwise by the whole factor, in N^3 / 3 operations. Source:
+  // Harbrecht, Peters & Schneider (2012), section 2, for L.
+  struct Solution {
+    Eigen::VectorXd u;
+    double condition_number = 0.0;  // estimated by the power method
   };
-  std::optional<Factor> cholesky(double smoothing, const FitControl& control = {}) const;
+  std::optional<Solution> solve(const Eigen::VectorXd& data, double smoothing, const FitControl& control) const;
 
   // P v.
   Eigen::VectorXd project(const Eigen::VectorXd& v) const { return v - q_ * (q_.transpose() * v); }
@@ -53,6 +60,19 @@ class ProjectedKernel {
   double smallest_smoothing() const { return smallest_smoothing_; }
 
  private:
+  static constexpr Eigen::Index kBlock = 64;  // columns at a time; a multiple of 8
+  // The factor of so many takes a third of a second of one core.
+  static constexpr Eigen::Index kFactorisedSites = 4096;
+
+  // P K P + fill q q^T, in the rows from `first` on (a multiple of 8) and the columns of these sites. `update`: half
+  // of what is subtracted for fill, N x rank.
+  void entries(const std::vector<Eigen::Index>& sites, Eigen::Index first, const Eigen::MatrixXd& update,
+               MatrixRef out) const;
+  // L, with an eighth of the columns or fewer; no columns where the rest of P K P is too large.
+  Eigen::MatrixXd low_rank(double smoothing) const;
+  // None if L does not suffice, or if interrupted.
+  std::optional<Solution> iterate(const Eigen::VectorXd& data, double smoothing, const FitControl& control) const;
+
   KernelKind kernel_;
   Eigen::MatrixXd points_;
   PointArrays arrays_;  // the same points
@@ -91,12 +111,12 @@ FittedCorrection solve_weights(const Sites& sites, const Eigen::MatrixXd& centre
 // The limit of the number of sites; more would take over 4 GiB and minutes.
 inline constexpr Eigen::Index kMostDirectSites = 20000;
 
-// With every site as a centre: the projected system is solved by a Cholesky factorisation. The
-// paper inverts the saddle matrix of eq. 4 by truncated singular values, which takes a hundred times as long and has
-// the same purpose (models/fit/fit.h). With smoothing 0 the function interpolates as closely as the smallest
-// smoothing allows at which the matrix can be factorised. Errors: too many sites; no factorisation; interrupted,
-// checked before each step. Deterministic on one machine. O(N^3), N^2 doubles. Source: Hoever & Harders (2009), eqs.
-// 2-8.
+// With every site as a centre: the solution of the projected system, whose time and memory are those of
+// ProjectedKernel::solve. The paper inverts the saddle matrix of eq. 4 by truncated singular values, which takes a
+// hundred times as long and has the same purpose (models/fit/fit.h). With smoothing 0 the function interpolates as
+// closely as the smallest smoothing allows at which the matrix can be factorised. Errors: too many sites; no
+// factorisation; interrupted, checked before each step. Deterministic on one machine. Source: Hoever & Harders (2009),
+// eqs. 2-8.
 Result<FittedCorrection> solve_direct(const Sites& sites, const FitControl& control = {});
 
 // An orthonormal basis of the selected columns, scaled by row_scale, with the residual of the data, and the gain of

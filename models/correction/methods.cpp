@@ -13,7 +13,7 @@ const Method kDirectMethod{
     .name = "direct",
     .colour = kNeutralColour,
     .takes = kTakesKernel,
-    .expected_seconds = 3.0,
+    .expected_seconds = 1.0,
     .fit = [](const MethodTask& task, const FitControl& control) { return solve_direct(task.sites, control); },
 };
 

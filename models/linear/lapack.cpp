@@ -22,7 +22,7 @@ void dgesdd_(const char*, const int*, const int*, double*, const int*, double*, 
 void dpotrf_(const char*, const int*, double*, const int*, int*);
 void dtrsm_(const char*, const char*, const char*, const char*, const int*, const int*, const double*, const double*,
             const int*, double*, const int*);
-void dpocon_(const char*, const int*, const double*, const int*, const double*, double*, double*, int*, int*);
+void dpstrf_(const char*, const int*, double*, const int*, int*, int*, const double*, double*, int*);
 // Only in OpenBLAS; null with another BLAS.
 [[gnu::weak]] void openblas_set_num_threads(int);
 [[gnu::weak]] int openblas_get_num_threads(void);
@@ -194,20 +194,27 @@ bool cholesky_in_place(MatrixRef a, const FitControl& control) {
     if (below == 0) break;
     const int m = to_int(below), n = to_int(columns);
     double* const panel = &a(first + columns, first);
-    dtrsm_("R", "L", "T", "N", &m, &n, &one, &a(first, first), &lda, panel, &lda);
+    solve_triangle(a.block(first, first, columns, columns), a.block(first + columns, first, below, columns));
     dsyrk_("L", "N", &m, &n, &minus_one, panel, &lda, &one, &a(first + columns, first + columns), &lda);
   }
   return true;
 }
 
-double cholesky_condition(const ConstMatrixRef& factor, double norm) {
-  const int n = to_int(factor.rows()), lda = leading(factor);
-  Eigen::VectorXd work(3 * n);
-  std::vector<int> integers(static_cast<std::size_t>(n));
-  double reciprocal = 0.0;
-  int info = 0;
-  dpocon_("L", &n, factor.data(), &lda, &norm, &reciprocal, work.data(), integers.data(), &info);
-  return 1.0 / reciprocal;
+void solve_triangle(const ConstMatrixRef& lower, MatrixRef rows) {
+  const double one = 1.0;
+  const int m = to_int(rows.rows()), n = to_int(rows.cols()), lda = leading(lower), ldb = leading(rows);
+  dtrsm_("R", "L", "T", "N", &m, &n, &one, lower.data(), &lda, rows.data(), &ldb);
+}
+
+std::vector<int> cholesky_pivots(MatrixRef a, double least) {
+  const int n = to_int(a.rows()), lda = leading(a);
+  int rank = 0, info = 0;
+  std::vector<int> pivots(static_cast<std::size_t>(n));
+  Eigen::VectorXd work(2 * n);
+  dpstrf_("L", &n, a.data(), &lda, pivots.data(), &rank, &least, work.data(), &info);
+  pivots.resize(static_cast<std::size_t>(rank));
+  for (int& pivot : pivots) --pivot;
+  return pivots;
 }
 
 void cholesky_solve(const ConstMatrixRef& factor, Eigen::VectorXd& b) {

@@ -9,6 +9,7 @@
 #include <Eigen/Core>
 #include <mutex>
 #include <string>
+#include <vector>
 
 #include "engine/base/parallel.h"
 
@@ -71,9 +72,11 @@ bool cholesky_in_place(MatrixRef a);
 // The same in steps of some hundred columns. False, too, if `control` interrupts it; the fraction is that of the
 // operations.
 bool cholesky_in_place(MatrixRef a, const FitControl& control);
-// The condition number of the factorised matrix in the 1-norm, estimated (Higham 1988). `norm`: the 1-norm of the
-// matrix.
-double cholesky_condition(const ConstMatrixRef& factor, double norm);
+// Replaces `rows` by rows L^-T; `lower`: L, a Cholesky factor.
+void solve_triangle(const ConstMatrixRef& lower, MatrixRef rows);
+// The pivots of a Cholesky factorisation of a positive semidefinite `a` that takes the largest rest of the diagonal
+// first, as long as it is above `least`. Sets the lower triangle of their rows, in this order, to their factor.
+std::vector<int> cholesky_pivots(MatrixRef a, double least);
 // Replaces b by the solution of a x = b; `factor`: from cholesky_in_place.
 void cholesky_solve(const ConstMatrixRef& factor, Eigen::VectorXd& b);
 // Solves a x = b for a positive semidefinite `a`, given by its lower triangle. Rows and columns are scaled to a

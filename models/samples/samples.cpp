@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cmath>
 #include <limits>
+#include <mutex>
 #include <span>
 #include <tuple>
 
@@ -295,29 +296,37 @@ bool is_apart(const Samples& samples, std::size_t row, double least_step_s, doub
 Result<Eigen::MatrixXd> at_rows(const Samples& samples, const std::vector<FeatureSpec>& features,
                                 const std::vector<std::size_t>& rows, const FitControl& control, double least_step_s,
                                 const auto& size_of, const auto& values) {
-  // A filter for each of two threads, or more; a feature does not depend on the others of its filter.
-  const std::size_t count = features.size();
-  const std::size_t parts = std::min(count, std::max<std::size_t>(2, (count + kMaxFeatures - 1) / kMaxFeatures));
+  std::vector<std::size_t> begins;
+  for (std::size_t i = 0; i < samples.rows.size(); ++i)
+    if (samples.begins_recording(i)) begins.push_back(i);
+  // A filter for each recording, and of a single one for each of two threads, or more; a feature does not depend on the
+  // others of its filter.
+  const std::size_t count = features.size(), recordings = begins.size();
+  const std::size_t parts =
+      std::min(count, std::max<std::size_t>(recordings > 1 ? 1 : 2, (count + kMaxFeatures - 1) / kMaxFeatures));
   Eigen::MatrixXd all(static_cast<Eigen::Index>(size_of(features)), static_cast<Eigen::Index>(rows.size()));
   std::atomic<bool> stopped = false;
-  parallel_for(static_cast<int>(parts), [&](int part) {
-    const auto at = static_cast<std::size_t>(part);
+  std::mutex asking;
+  parallel_for(static_cast<int>(parts * recordings), [&](int item) {
+    const std::size_t at = static_cast<std::size_t>(item) % parts,
+                      from = begins[static_cast<std::size_t>(item) / parts];
     const auto begin = features.begin() + static_cast<std::ptrdiff_t>(count * at / parts);
     const auto end = features.begin() + static_cast<std::ptrdiff_t>(count * (at + 1) / parts);
     const auto first = static_cast<Eigen::Index>(size_of({features.begin(), begin}));
     FeatureFilter filter({begin, end});
-    std::size_t column = 0;
+    auto row = std::ranges::lower_bound(rows, from);
     double last_s = 0.0;
-    for (std::size_t i = 0; i < samples.rows.size() && column < rows.size(); ++i) {
-      if (i % kRowsPerQuestion == 0 && (stopped || (part == 0 && !control.may_continue()))) {
-        stopped = true;
-        return;
+    for (std::size_t i = from; row != rows.end() && i < samples.rows.size(); ++i) {
+      if (i > from && samples.begins_recording(i)) return;
+      if ((i - from) % kRowsPerQuestion == 0 && at == 0) {
+        const std::scoped_lock lock(asking);
+        stopped = stopped || !control.may_continue();
       }
+      if (stopped) return;
       if (!is_apart(samples, i, least_step_s, last_s)) continue;
-      if (samples.begins_recording(i)) filter.reset();
       filter.update(samples.rows[i].tool, samples.rows[i].motion);
-      if (i != rows[column]) continue;
-      std::ranges::copy(values(filter), all.col(static_cast<Eigen::Index>(column++)).begin() + first);
+      if (i != *row) continue;
+      std::ranges::copy(values(filter), all.col(row++ - rows.begin()).begin() + first);
     }
   });
   if (stopped) return interrupted();

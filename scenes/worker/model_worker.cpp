@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "engine/base/files.h"
+#include "engine/base/parallel.h"
 #include "engine/base/text.h"
 #include "engine/live/pacer.h"
 #include "engine/tick/haptics_tick.h"
@@ -269,8 +270,11 @@ Status ModelWorker::prepare_recordings() {
     if (!recording) return recording.error();
     training_.push_back(std::move(*recording));
   }
-  std::vector<PreparedRecordingPointer> recordings;
-  for (Recording& recording : training_) recordings.push_back(prepare_recording(std::move(recording)));
+  std::vector<PreparedRecordingPointer> recordings(training_.size());
+  parallel_for(static_cast<int>(recordings.size()), [&](int i) {
+    const auto at = static_cast<std::size_t>(i);
+    recordings[at] = prepare_recording(std::move(training_[at]));
+  });
   training_.clear();
   fits_.emplace(std::move(recordings), training_scene(scene_));
   return {};
