@@ -233,16 +233,10 @@ Result<PreparedTraining> prepare_training(SamplesPointer samples, const Training
   return prepared;
 }
 
-Eigen::VectorXd site_thresholds(const PreparedTraining& prepared) {
-  Eigen::VectorXd jnd_N(prepared.sites.count());
-  for (Eigen::Index i = 0; i < jnd_N.size(); ++i) jnd_N(i) = prepared.common.jnd.at(prepared.sites.force_N(i));
-  return jnd_N;
-}
-
 Result<MethodFit> fit_method(const PreparedTraining& prepared, const ModelPlan& plan, const FitControl& control,
                              const MethodFit* base, const OpenChoices* choices) {
-  MethodFit fit{prepared.common, {}};
-  ModelData& data = fit.data;
+  MethodFit fit;
+  ModelData data = prepared.common;
   // If cross-validation takes no correction, the model is the trend, and is called so.
   ModelPlan asked = plan;
   if (!prepared.corrects()) asked.method = &kTrendMethod;
@@ -260,8 +254,9 @@ Result<MethodFit> fit_method(const PreparedTraining& prepared, const ModelPlan& 
     sites = chosen_sites(*selected, prepared, data);
     fit.notes.push_back(choices_text(*selected, asked.method->can_take(kTakesKernel)));
   }
-  const CorrectionPtr from = base == nullptr || asked.method->base == nullptr ? nullptr : base->data.correction;
-  const Eigen::VectorXd jnd_N = site_thresholds(prepared);
+  const CorrectionPtr from =
+      base == nullptr || asked.method->base == nullptr ? nullptr : base->model->data().correction;
+  const Eigen::VectorXd jnd_N = sites.force_N.unaryExpr([&](double force_N) { return data.jnd.at(force_N); });
   auto fitted = fit_correction(*asked.method, task_of(asked, sites, jnd_N, from), control.part(kChosen, kFitted));
   if (!fitted) return fitted.error();
   if (asked.method->can_take(kTakesKernel)) fit.kernel = sites.kernel;
@@ -303,13 +298,14 @@ Result<MethodFit> fit_method(const PreparedTraining& prepared, const ModelPlan& 
   }
   if (!control.may_continue(0.99)) return interrupted();
   data.provenance.training_within_jnd = share_within_jnd(prepared, data);
+  fit.model = std::make_shared<const FittedModel>(std::move(data));
   if (!control.may_continue(1.0)) return interrupted();
   return fit;
 }
 
 nlohmann::ordered_json fit_json(const MethodFit& fit, double seconds) {
   using Json = nlohmann::ordered_json;
-  const ModelData& data = fit.data;
+  const ModelData& data = fit.model->data();
   Json features = Json::array(), recordings = features;
   for (const FeatureSpec& spec : data.features) features.push_back(feature_name(spec));
   for (const RecordingOffset& one : data.provenance.offsets) {

@@ -228,8 +228,8 @@ struct PreparedTraining {
 };
 
 struct MethodFit {
-  ModelData data;
-  std::vector<std::string> notes;        // sentences for the user
+  std::shared_ptr<const FittedModel> model;
+  std::vector<std::string> notes{};      // sentences for the user
   std::optional<KernelKind> kernel{};    // of a method that takes one
   std::optional<OpenChoices> choices{};  // with Base::force
   double error_over_jnd = 0.0;           // cross-validated: of the choices, or of the rows that were left out
@@ -241,8 +241,6 @@ struct MethodFit {
 // Errors: the plan does not suit the scene; interrupted.
 Result<PreparedTraining> prepare_training(SamplesPointer samples, const TrainingScene& scene, const ModelPlan& plan,
                                           const FitControl& control = {});
-// The JND at the force of each site.
-Eigen::VectorXd site_thresholds(const PreparedTraining& prepared);
 // Fits the method of a plan with this preparation. Deterministic. `base`: a fit with the same preparation by the base
 // of the method (methods.h), which is then not repeated. `choices`: those of a fit with this preparation and number of
 // centres. Errors: the method cannot be fitted to these sites (says why); the forces of the model are not finite;

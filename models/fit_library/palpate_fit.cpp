@@ -79,6 +79,6 @@ palpate_model* palpate_fit(const palpate_recording* recordings, size_t recording
     if (!fitted) return fitted.error();
     const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - began;
     const std::string figures = fit_json(*fitted, elapsed.count()).dump();
-    return new palpate_model(std::make_shared<const FittedModel>(std::move(fitted->data)), figures);
+    return new palpate_model(fitted->model, figures);
   });
 }

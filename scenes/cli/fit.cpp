@@ -64,16 +64,16 @@ void read_plan(FitArguments& arguments) {
 
 // Replays the training recordings as recorded, and reports where their share within the JND contradicts that of the
 // fit.
-std::string training_contradiction(const std::vector<CheckedFile>& files, const ModelData& data) {
-  const auto model = std::make_shared<const FittedModel>(data);
+std::string training_contradiction(const std::vector<CheckedFile>& files,
+                                   const std::shared_ptr<const FittedModel>& model) {
   ErrorFigures errors;
   for (const CheckedFile& file : files) {
     if (file.prepared->stride > 1) return {};  // rows are missing
     replay(file.recording(), {model}, [&](const RecordingRow& row, const TickSnapshot& snapshot, const HapticsTick&) {
-      if (snapshot.in_contact) errors.add(snapshot.force_N[0], row.force_N, false, data.jnd);
+      if (snapshot.in_contact) errors.add(snapshot.force_N[0], row.force_N, false, model->data().jnd);
     });
   }
-  const double printed = data.provenance.training_within_jnd;
+  const double printed = model->data().provenance.training_within_jnd;
   if (!(std::abs(errors.within_jnd() - printed) > kLeastShare)) return {};
   return "in training, " + fixed(100.0 * errors.within_jnd(), 2) + " % within one JND as recorded, " +
          fixed(100.0 * printed, 2) + " % after correction";
@@ -113,13 +113,14 @@ std::string relaxation_bands(const std::vector<FeatureSpec>& features) {
 
 void print_fit(const PreparedTraining& prepared, const MethodFit& fit, double seconds, bool accelerometer,
                const FitArguments& arguments) {
-  const Provenance& provenance = fit.data.provenance;
+  const ModelData& data = fit.model->data();
+  const Provenance& provenance = data.provenance;
   if (!prepared.gains.empty()) {
     print_table(table_text(gains_table(prepared.gains)), true);
     std::printf("\n");
   }
-  print_line("model", fit.data.name + ", fitted in " + fixed(seconds, 2) + " s");
-  if (const RbfFunction* const rbf = rbf_of(fit.data.correction); rbf != nullptr && fit.rank > 0) {
+  print_line("model", data.name + ", fitted in " + fixed(seconds, 2) + " s");
+  if (const RbfFunction* const rbf = rbf_of(data.correction); rbf != nullptr && fit.rank > 0) {
     print_line("centres", std::to_string(rbf->centre_count()) + ", rank " + std::to_string(fit.rank) + " of " +
                               std::to_string(rbf->centre_count() + rbf->tail.size()) + " columns");
   }
@@ -127,10 +128,9 @@ void print_fit(const PreparedTraining& prepared, const MethodFit& fit, double se
                             " in contact, " + std::to_string(provenance.samples_after_reduction) + " after thinning");
   for (const RecordingOffset& surface : provenance.offsets) print_line("surface", surface_text(surface));
   // The depth is the first feature.
-  if (const double begins_m = fit.data.features.front().surface_position_m; begins_m != 0.0)
+  if (const double begins_m = data.features.front().surface_position_m; begins_m != 0.0)
     print_line("depth starts", "at " + fixed(1e3 * begins_m, 3) + " mm, where the force of the recordings begins");
-  if (const std::string bands = relaxation_bands(fit.data.features); !bands.empty())
-    print_line("relaxation times", bands);
+  if (const std::string bands = relaxation_bands(data.features); !bands.empty()) print_line("relaxation times", bands);
   if (prepared.correction) print_line("correction", correction_text(*prepared.correction));
   for (const std::string& note : fit.notes)
     print_line(fit.choices && note == choices_text(*fit.choices, fit.kernel.has_value()) ? "selected" : "note", note);
@@ -163,9 +163,8 @@ Status run_fit(const FitArguments& arguments) {
   const auto fitted = fits.fit(arguments.plan, {[&](double fraction) { return line->update(fraction); }});
   if (!fitted) return fitted.error();
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
-  const ModelData& data = fitted->data;
-  const std::string contradiction = training_contradiction(*checked, data);
-  if (Status status = save_model(arguments.out, data, arguments.force); !status) return status;
+  const std::string contradiction = training_contradiction(*checked, fitted->model);
+  if (Status status = save_model(arguments.out, fitted->model->data(), arguments.force); !status) return status;
   line.reset();  // ends the progress line
   if (!contradiction.empty()) std::cerr << "note: " << printable(contradiction, std::string::npos) << "\n";
   if (arguments.json) {

@@ -84,30 +84,15 @@ Result<MethodFit> HardTraining::untruncated(const FitControl& control) {
   return fit_method(**prepared, plan, control, nullptr, &choices);
 }
 
-Result<HardTraining::Fit> HardTraining::fit(const HardMethod& method, const FitControl& control) {
+const Result<MethodFit>& HardTraining::fit(const HardMethod& method, const FitControl& control) {
   if (const auto made = made_.find(method.name); made != made_.end()) return made->second;
   ModelPlan asked = common_;
   asked.base = method.plan.base;
   asked.method = method.plan.method;
   const double start_s = steady_now_s();
-  Fit fit;
-  const auto keep = [&](const auto& fitted) {
-    fit.seconds = steady_now_s() - start_s;
-    if (!fitted) {
-      fit.refusal = fitted.error().message;
-      return;
-    }
-    fit.model = std::make_shared<const FittedModel>(fitted->data);
-    fit.rank = fitted->rank;
-    fit.condition_number = fitted->condition_number;
-  };
-  if (method.untruncated) {
-    keep(untruncated(control));
-  } else {
-    keep(fits_.fit(asked, control));
-  }
-  if (fit.refusal == interrupted().message) return interrupted();
-  return made_[method.name] = fit;
+  auto fit = method.untruncated ? untruncated(control) : fits_.fit(asked, control);
+  if (fit) fit->seconds = steady_now_s() - start_s;
+  return made_.emplace(method.name, std::move(fit)).first->second;
 }
 
 std::string missed_by(const HardCell& cell, const HardCase& of, const std::string& method) {
@@ -182,13 +167,13 @@ Result<HardRow> run_case(HardCase one, const FitControl& control) {
   HardRow row{std::move(one), {}};
   const std::vector<HardMethod> methods = hard_methods();
   for (const HardMethod& method : methods) {
-    auto fitted = trial.training->fit(method, control);
-    if (!fitted) return fitted.error();
-    row.cells.push_back({std::move(*fitted)});
+    const auto& fitted = trial.training->fit(method, control);
+    row.cells.push_back(fitted ? HardCell{*fitted} : HardCell{.refusal = fitted.error().message});
+    if (row.cells.back().refusal == interrupted().message) return interrupted();
   }
   parallel_for(static_cast<int>(row.cells.size()), [&](int i) {
     HardCell& cell = row.cells[static_cast<std::size_t>(i)];
-    if (cell.model) cell.figures = trial.measure(cell.model);
+    if (cell.fit.model) cell.figures = trial.measure(cell.fit.model);
   });
   for (std::size_t k = 0; k < row.cells.size(); ++k) {
     row.cells[k].breaks = row.cells[k].figures.breaks(row.of.unknown.empty());
@@ -222,13 +207,13 @@ Table cells_table(const std::vector<HardRow>& rows) {
       table.add({"breaks", "breaks"}, breaks_text(cell.breaks));
       table.add({"expected", "as expected"}, cell.missed.empty());
       table.add({"missed", "missed"}, cell.missed);
-      table.add({"rank", "rank"}, known(static_cast<double>(cell.rank), cell.rank > 0));
-      table.add({"condition_number", "condition"}, known(cell.condition_number, cell.condition_number > 0.0));
+      table.add({"rank", "rank"}, known(static_cast<double>(cell.fit.rank), cell.fit.rank > 0));
+      table.add({"condition_number", "condition"}, known(cell.fit.condition_number, cell.fit.condition_number > 0.0));
       table.add({"within_jnd", "≤ JND [%]", kInPercent, 2}, cell.figures.within_jnd);
       table.add({"worst_error_N", "worst [N]"}, cell.figures.worst_error_N);
       table.add({"worst_step_N", "step [mN]", kInMilli}, cell.figures.worst_step_N);
       table.add({"energy_J", "energy [mJ]", kInMilli}, cell.figures.energy_J);
-      table.add({"seconds", "fit [s]"}, cell.seconds);
+      table.add({"seconds", "fit [s]"}, known(cell.fit.seconds, cell.fit.model != nullptr));
     }
   }
   return table;
@@ -244,7 +229,7 @@ std::string cell_text(const HardCell& cell) {
 // What breaks, or the rank and condition number of the fit.
 std::string below_text(const HardCell& cell) {
   const std::string numerics =
-      cell.rank == 0 ? "–" : std::to_string(cell.rank) + " · " + general(cell.condition_number, 1);
+      cell.fit.rank == 0 ? "–" : std::to_string(cell.fit.rank) + " · " + general(cell.fit.condition_number, 1);
   if (cell.breaks == 0) return numerics;
   const bool step = (cell.breaks & kBreaksStep) != 0, energy = (cell.breaks & kBreaksEnergy) != 0;
   return breaks_text(cell.breaks) + (step ? " " + general(cell.figures.worst_step_N, 2) + " N" : "") +

@@ -72,22 +72,16 @@ class HardTraining {
   // `common`: what all plans have in common beside base and method.
   HardTraining(ModelFits fits, ModelPlan common) : fits_(std::move(fits)), common_(std::move(common)) {}
 
-  struct Fit {
-    std::shared_ptr<const FittedModel> model;  // null: refused
-    std::string refusal;
-    Eigen::Index rank = 0;  // as MethodFit
-    double condition_number = 0.0;
-    double seconds = 0.0;  // with the preparation, if this fit was the first to need it
-  };
-  // Errors: interrupted.
-  Result<Fit> fit(const HardMethod& method, const FitControl& control);
+  // Its `seconds` are with the preparation, if this fit was the first to need it. Errors: those of the fit;
+  // interrupted.
+  const Result<MethodFit>& fit(const HardMethod& method, const FitControl& control);
 
  private:
   Result<MethodFit> untruncated(const FitControl& control);
 
   ModelFits fits_;
   ModelPlan common_;
-  std::map<std::string, Fit> made_;  // by name
+  std::map<std::string, Result<MethodFit>> made_;  // by name
 };
 
 struct HardTrial {
@@ -129,7 +123,9 @@ std::vector<HardCase> material_cases();
 // All cases. Errors: the file cannot be read, is no JSON or lacks a case.
 Result<std::vector<HardCase>> hard_cases();
 
-struct HardCell : HardTraining::Fit {
+struct HardCell {
+  MethodFit fit{};        // without a model: refused
+  std::string refusal{};  // why
   HardFigures figures{};
   unsigned breaks = 0;
   std::string missed{};  // what is not as expected; empty: all is

@@ -40,15 +40,6 @@ class Progress {
   double done_ = 0.0;
 };
 
-// One fit of one fold. Several rows have the same where they ask for the same.
-struct Fitted {
-  ModelPlan plan;
-  std::shared_ptr<const FittedModel> model;
-  double error_over_jnd = 0.0;  // cross-validated in the training recordings
-  double seconds = 0.0;
-  Eigen::Index rank = 0;  // as in MethodFit
-};
-
 class Measurement {
  public:
   Measurement(ReportData& data, bool quick, const FitControl& control)
@@ -98,9 +89,9 @@ class Measurement {
 
   bool first_fold() const { return data_.tested.empty(); }
 
-  Result<Fitted> fit_once(ModelFits& fits, const ModelPlan& plan) {
-    for (const Fitted& one : fitted_) {
-      if (one.plan == plan) return one;
+  Result<MethodFit> fit_once(ModelFits& fits, const ModelPlan& plan) {
+    for (const auto& [asked, fit] : fitted_) {
+      if (asked == plan) return fit;
     }
     const double expected_s = plan.method->expected_seconds;
     auto one = fits.fit(plan, progress_.next(expected_s));
@@ -108,8 +99,7 @@ class Measurement {
     if (!one) return Error{plan_name(plan) + ": " + one.error().message};
     if (first_fold() && one->choices)
       data_.choices.try_emplace(plan.selects_centres() ? plan.centres : 0, *one->choices);
-    return fitted_.emplace_back(Fitted{plan, std::make_shared<const FittedModel>(std::move(one->data)),
-                                       one->error_over_jnd, one->seconds, one->rank});
+    return fitted_.emplace_back(plan, std::move(*one)).second;
   }
 
   // The number of centres of this fold, from the cross-validated errors of random centres.
@@ -351,10 +341,10 @@ class Measurement {
   ReportData& data_;
   std::vector<ModelResult>& models_;
   Progress progress_;
-  std::vector<Fitted> fitted_;  // of the current fold
-  Evaluation evaluation_;       // of all models but the first on all test recordings
-  Evaluation untared_;          // the same with the forces as recorded, if `tares_`
-  bool tares_ = false;          // a test recording has a force zero
+  std::vector<std::pair<ModelPlan, MethodFit>> fitted_;  // of the current fold; several rows may have the same
+  Evaluation evaluation_;                                // of all models but the first on all test recordings
+  Evaluation untared_;                                   // the same with the forces as recorded, if `tares_`
+  bool tares_ = false;                                   // a test recording has a force zero
 };
 
 }  // namespace

@@ -11,8 +11,10 @@
 // Thread guarantee: slow side.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "engine/base/parallel.h"
@@ -49,32 +51,21 @@ struct PaperRun {
 };
 enum PaperMethod : std::size_t { kGridOfAll, kRandomCentres, kTreeCentres, kGreedy20, kGreedy100, kPaperMethods };
 
-// Processor time of a fit by the number of sites; figure 8.
+// Processor time of the fits to one set of sites.
 struct FitTimes {
-  std::size_t sites = 0;
-  std::vector<double> seconds;  // in the order of PaperMethod
-  double solve_s = 0.0;         // of the interpolation, without its grid
-};
-// Processor time of a fit by the dimension of the domain; figure 2.
-struct DimensionTimes {
-  std::size_t dimensions = 0;
-  double solve_s = 0.0;   // of the weights of all sites
-  double grid_s = 0.0;    // evaluation on 10 nodes per dimension
-  double greedy_s = 0.0;  // greedy-20
-};
-// Processor time of one evaluation by the number of centres.
-struct CentreTimes {
-  std::size_t centres = 0;
-  double evaluation_s = 0.0;
+  std::size_t of = 0;                         // number of sites, or of dimensions
+  std::array<double, kPaperMethods> fit_s{};  // 0: not measured; of kGridOfAll the interpolation and its grid
+  double solve_s = 0.0;                       // of the weights of the interpolation
+  double grid_s() const { return fit_s[kGridOfAll] - solve_s; }
 };
 
 struct PaperData {
   JndLine jnd;
   bool quick = false;
   std::vector<PaperRun> runs;
-  std::vector<FitTimes> by_sites;
-  std::vector<DimensionTimes> by_dimension;
-  std::vector<CentreTimes> by_centres;
+  std::vector<FitTimes> by_sites;                     // figure 8
+  std::vector<FitTimes> by_dimension;                 // figure 2: a grid of 10 nodes per dimension, and greedy-20
+  std::vector<std::pair<double, double>> by_centres;  // of one evaluation: number of centres, processor time in s
   // The largest ratio of the slowest to the fastest round of one measurement. Times are those of the fastest.
   double slowest_round = 1.0;
   std::vector<JndPoint> points;  // of the study, and of Pang, Tan & Durlach (1991)

@@ -156,7 +156,7 @@ class PaperMeasurement {
       if (!fit) return Error{run.material + ", " + kNames[which] + ": " + fit.error().message};
       to.push_back({kNames[which], colour_of(which), processor_s() - start_s, {}, {}});
       if (!choices) centres_ = fit->choices;
-      models.push_back(std::make_shared<const FittedModel>(std::move(fit->data)));
+      models.push_back(fit->model);
       evaluated.push_back({models.back(), data_.jnd});
       return {};
     };
@@ -193,42 +193,47 @@ class PaperMeasurement {
     return {};
   }
 
-  // With the open choices of the models.
+  // The times of these methods, with the open choices of the models. `grid`: of the interpolation.
+  Result<FitTimes> times_of(std::size_t of, Sites sites, const std::vector<int>& grid,
+                            const std::vector<PaperMethod>& methods) {
+    FitTimes times{of};
+    const Eigen::VectorXd jnd_N = sites.target_N.unaryExpr([&](double force_N) { return data_.jnd.at(force_N); });
+    sites.kernel = direct_->kernel;
+    sites.smoothing = direct_->smoothing;
+    CorrectionPtr interpolation;
+    const auto solved = fastest([&] {
+      auto fit = fit_correction(kDirectMethod, {sites, jnd_N}, part());
+      if (fit) interpolation = fit->correction;
+      return fit;
+    });
+    if (!solved) return solved.error();
+    times.solve_s = *solved;
+    for (const PaperMethod which : methods) {
+      const bool on_grid = which == kGridOfAll;
+      if (!on_grid) {
+        sites.kernel = centres_->kernel;
+        sites.truncation = centres_->truncation;
+      }
+      const ModelPlan plan = plan_of(which);
+      const MethodTask task{
+          sites, jnd_N, plan.centres, plan.candidates, grid, plan.seed, on_grid ? interpolation : nullptr};
+      const auto seconds = fastest([&] { return fit_correction(*plan.method, task, part()); });
+      if (!seconds) return seconds.error();
+      times.fit_s[which] = *seconds + (on_grid ? times.solve_s : 0.0);
+    }
+    return times;
+  }
+
   Status time_sites(const PreparedTraining& prepared) {
-    const Eigen::Index all = prepared.sites.count();
     for (const double share :
          data_.quick ? std::vector<double>{0.25, 0.5, 1.0} : std::vector<double>{0.125, 0.25, 0.5, 1.0}) {
-      Sites some = even_subset(prepared.sites, static_cast<Eigen::Index>(share * static_cast<double>(all)));
-      const Eigen::VectorXd jnd_N = some.target_N.unaryExpr([&](double force_N) { return data_.jnd.at(force_N); });
-      FitTimes times{static_cast<std::size_t>(some.count()), {}};
-      some.kernel = direct_->kernel;
-      some.smoothing = direct_->smoothing;
-      CorrectionPtr interpolation;
-      const auto solved = fastest([&] {
-        auto fit = fit_correction(kDirectMethod, {some, jnd_N}, part());
-        if (fit) interpolation = fit->correction;
-        return fit;
-      });
-      if (!solved) return solved.error();
-      times.solve_s = *solved;
-      for (std::size_t which = 0; which < kPaperMethods; ++which) {
-        if (which == kRandomCentres) {
-          some.kernel = centres_->kernel;
-          some.truncation = centres_->truncation;
-        }
-        const ModelPlan plan = plan_of(which);
-        const MethodTask task{some,
-                              jnd_N,
-                              plan.centres,
-                              plan.candidates,
-                              plan.grid,
-                              plan.seed,
-                              which == kGridOfAll ? interpolation : nullptr};
-        const auto seconds = fastest([&] { return fit_correction(*plan.method, task, part()); });
-        if (!seconds) return seconds.error();
-        times.seconds.push_back(*seconds + (which == kGridOfAll ? times.solve_s : 0.0));
-      }
-      data_.by_sites.push_back(std::move(times));
+      Sites some =
+          even_subset(prepared.sites, static_cast<Eigen::Index>(share * static_cast<double>(prepared.sites.count())));
+      const auto count = static_cast<std::size_t>(some.count());
+      const auto times =
+          times_of(count, std::move(some), kGrid, {kGridOfAll, kRandomCentres, kTreeCentres, kGreedy20, kGreedy100});
+      if (!times) return times.error();
+      data_.by_sites.push_back(*times);
     }
     return {};
   }
@@ -241,25 +246,10 @@ class PaperMeasurement {
       scene.features.assign(features.begin(), features.begin() + static_cast<std::ptrdiff_t>(d));
       auto prepared = prepare(train, scene, false);
       if (!prepared) return prepared.error();
-      prepared->sites.kernel = direct_->kernel;
-      prepared->sites.smoothing = direct_->smoothing;
-      const Eigen::VectorXd jnd_N = site_thresholds(*prepared);
-      MethodTask asked{prepared->sites, jnd_N};
-      asked.grid.assign(d, kNodesOfFigure2);
-      const auto solved = fastest([&] {
-        auto fit = fit_correction(kDirectMethod, {prepared->sites, jnd_N}, part());
-        if (fit) asked.base = fit->correction;
-        return fit;
-      });
-      if (!solved) return solved.error();
-      const auto grid = fastest([&] { return fit_correction(kVoxelMethod, asked, part()); });
-      if (!grid) return grid.error();
-      prepared->sites.kernel = centres_->kernel;
-      prepared->sites.truncation = centres_->truncation;
-      const MethodTask greedy{prepared->sites, jnd_N, 100, 20};
-      const auto selected = fastest([&] { return fit_correction(kGreedyMethod, greedy, part()); });
-      if (!selected) return selected.error();
-      data_.by_dimension.push_back({d, *solved, *grid, *selected});
+      const auto times =
+          times_of(d, std::move(prepared->sites), std::vector<int>(d, kNodesOfFigure2), {kGridOfAll, kGreedy20});
+      if (!times) return times.error();
+      data_.by_dimension.push_back(*times);
     }
     return {};
   }
@@ -278,8 +268,7 @@ class PaperMeasurement {
         return true;
       });
       if (!seconds) return seconds.error();
-      data_.by_centres.push_back(
-          {static_cast<std::size_t>(correction.size()), *seconds / static_cast<double>(sites.count())});
+      data_.by_centres.emplace_back(correction.size(), *seconds / static_cast<double>(sites.count()));
     }
     return {};
   }

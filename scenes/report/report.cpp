@@ -299,7 +299,7 @@ Result<std::string> model_text(const ReportData& data, const ReportRequest& requ
   ModelPlan plan = *use.plan;
   if (plan.selects_centres()) plan.centres = use.size;
   auto fit = fits.fit(plan, control);
-  return fit ? write_model_text(fit->data) : fit.error();
+  return fit ? write_model_text(fit->model->data()) : fit.error();
 }
 
 }  // namespace

@@ -249,9 +249,14 @@ Result<std::shared_ptr<const FittedModel>> ModelWorker::make(const ModelRequest&
   if (const std::string ready = ready_file(request.plan); !ready.empty()) {
     if (auto model = load_model(ready)) return model;
   }
-  Result<ModelData> data = fit(request.plan);
-  if (!data) return data.error();
-  return std::make_shared<const FittedModel>(std::move(*data));
+  if (const Status status = prepare_recordings(); !status) return status.error();
+  ModelPlan plan = request.plan;
+  plan.seed = seed_;
+  // The progress of the virtual recording, or 0 if it was done before.
+  const double done = share_.load(std::memory_order_relaxed);
+  auto fitted = fits_->fit(plan, control(done, 1.0));
+  if (!fitted) return fitted.error();
+  return fitted->model;
 }
 
 FitControl ModelWorker::control(double from, double to) {
@@ -278,17 +283,6 @@ Status ModelWorker::prepare_recordings() {
   training_.clear();
   fits_.emplace(std::move(recordings), training_scene(scene_));
   return {};
-}
-
-Result<ModelData> ModelWorker::fit(const ModelPlan& asked) {
-  if (const Status status = prepare_recordings(); !status) return status.error();
-  ModelPlan plan = asked;
-  plan.seed = seed_;
-  // The progress of the virtual recording, or 0 if it was done before.
-  const double done = share_.load(std::memory_order_relaxed);
-  auto fitted = fits_->fit(plan, control(done, 1.0));
-  if (!fitted) return fitted.error();
-  return std::move(fitted->data);
 }
 
 Status make_ready_models(const std::string& folder, const std::string& scene_name) {

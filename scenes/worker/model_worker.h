@@ -119,7 +119,6 @@ class ModelWorker {
   };
   void work();  // until cancelled
   double expected_cost_s(const ModelRequest& request) const;
-  Result<ModelData> fit(const ModelPlan& plan);
   Status prepare_recordings();
   FitControl control(double from, double to);
 

@@ -53,7 +53,7 @@ void voxel(benchmark::State& state) {
 void whole_model(benchmark::State& state, const Method* method) {
   const Result<MethodFit> fit = fit_method(recorded(), {.method = method, .features = FeatureChoice::scene});
   if (!fit) return state.SkipWithError(fit.error().message.c_str());
-  const FittedModel model(fit->data);
+  const FittedModel& model = *fit->model;
   run_queries(state, recorded().features, [&](const double* x) { return model.force(x); });
 }
 

@@ -94,7 +94,7 @@ PreparedTraining prepare(const std::vector<RecordingPtr>& recordings, const FitR
 
 ModelPtr fit(const PreparedTraining& prepared, const Method* method, std::uint64_t seed) {
   const ModelPlan plan{.base = prepared.correction ? Base::trend : Base::force, .method = method, .seed = seed};
-  return std::make_shared<const FittedModel>(must(fit_method(prepared, plan)).data);
+  return must(fit_method(prepared, plan)).model;
 }
 
 std::vector<ModelPtr> fit_all(const PreparedTraining& prepared) {

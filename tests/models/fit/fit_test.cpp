@@ -81,8 +81,8 @@ void expect_all_methods(const Recordings& recordings, Asked asked, double least_
   for (const ModelPlan& plan : plans_like(asked.plan)) {
     const auto fit = fit_method(*prepared, plan);
     ASSERT_TRUE(fit.ok()) << plan_name(plan) << ": " << fit.error().message;
-    expect_safe(fit->data);
-    EXPECT_GE(fit->data.provenance.training_within_jnd, least_within) << plan_name(plan);
+    expect_safe(fit->model->data());
+    EXPECT_GE(fit->model->data().provenance.training_within_jnd, least_within) << plan_name(plan);
   }
 }
 
@@ -158,11 +158,11 @@ TEST(Fit, EveryKernelAndThinning) {
       prepared->correction->used = true;  // a correction regardless of cross-validation
       const auto fit = fit_method(*prepared, asked.plan);
       ASSERT_TRUE(fit.ok()) << fit.error().message;
-      EXPECT_EQ(rbf_of(fit->data.correction)->kernel, kernel);
+      EXPECT_EQ(rbf_of(fit->model->data().correction)->kernel, kernel);
       EXPECT_EQ(fit->kernel, kernel);
       EXPECT_GT(fit->rank, 1);
       EXPECT_GE(fit->condition_number, 1.0);
-      expect_safe(fit->data);
+      expect_safe(fit->model->data());
     }
   }
 }
@@ -221,9 +221,9 @@ TEST(Fit, ACorrectionThatIsRejectedLeavesTheTrend) {
   for (const ModelPlan& plan : plans_like(asked.plan)) {
     const auto fit = fit_method(*prepared, plan);
     ASSERT_TRUE(fit.ok());
-    EXPECT_EQ(fit->data.name, "trend");
-    EXPECT_EQ(fit->data.method, "trend");
-    EXPECT_EQ(fit->data.correction, nullptr);
+    EXPECT_EQ(fit->model->data().name, "trend");
+    EXPECT_EQ(fit->model->data().method, "trend");
+    EXPECT_EQ(fit->model->data().correction, nullptr);
   }
 }
 
@@ -237,24 +237,24 @@ TEST(Fit, OnTheForceUsesWhatIsSelected) {
   OpenChoices choices{KernelKind::linear, 1.0, 1e-6, 0.0, 0.5};
   const auto fit = fit_method(*prepared, asked.plan, {}, nullptr, &choices);
   ASSERT_TRUE(fit.ok()) << fit.error().message;
-  EXPECT_EQ(fit->data.name, "random-30");
-  EXPECT_EQ(fit->data.scale, prepared->common.scale_of(1.0));
+  EXPECT_EQ(fit->model->data().name, "random-30");
+  EXPECT_EQ(fit->model->data().scale, prepared->common.scale_of(1.0));
   EXPECT_EQ(fit->kernel, KernelKind::linear);
   EXPECT_LT(fit->condition_number, 1e6);
   ASSERT_EQ(fit->notes.size(), 1u);
   EXPECT_EQ(fit->notes[0], choices_text(choices));
-  expect_safe(fit->data);
+  expect_safe(fit->model->data());
   // Centres are sites in the new normalisation.
-  const Eigen::MatrixXd& centres = rbf_of(fit->data.correction)->centres;
+  const Eigen::MatrixXd& centres = rbf_of(fit->model->data().correction)->centres;
   const Eigen::MatrixXd sites =
-      prepared->common.scale.cwiseQuotient(fit->data.scale).asDiagonal() * prepared->sites.points;
+      prepared->common.scale.cwiseQuotient(fit->model->data().scale).asDiagonal() * prepared->sites.points;
   for (Eigen::Index j = 0; j < centres.cols(); ++j)
     EXPECT_EQ((sites.colwise() - centres.col(j)).colwise().norm().minCoeff(), 0.0);
   const auto selected = fit_method(*prepared, asked.plan);
   ASSERT_TRUE(selected.ok());
   ASSERT_TRUE(selected->choices.has_value());
-  EXPECT_EQ(selected->data.scale, prepared->common.scale_of(selected->choices->range_exponent));
-  EXPECT_EQ(rbf_of(selected->data.correction)->kernel, selected->choices->kernel);
+  EXPECT_EQ(selected->model->data().scale, prepared->common.scale_of(selected->choices->range_exponent));
+  EXPECT_EQ(rbf_of(selected->model->data().correction)->kernel, selected->choices->kernel);
 }
 
 using test::must;
@@ -274,7 +274,7 @@ ModelPlan plan_for(Base base, const Method& method, int centres = 30) {
 std::pair<std::string, int> counted(ModelFits& fits, const ModelPlan& plan) {
   int questions = 0;
   const auto fit = must(fits.fit(plan, {[&](double) { return ++questions > 0; }}));
-  return {must(write_model_text(fit.data)), questions};
+  return {must(write_model_text(fit.model->data())), questions};
 }
 
 TEST(ModelFits, PlansThatDifferInTheMethodShareTheirPreparation) {

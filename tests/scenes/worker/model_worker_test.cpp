@@ -30,7 +30,7 @@ ModelRequest request_of(const std::string& name) { return {test::must(parse_plan
 FittedModel fitted(const std::string& scene, const std::string& name) {
   const Scene loaded = test::must(load_scene(scene));
   ModelFits fits({prepare_recording(test::must(record_sensors({*loaded.material, 1})))}, training_scene(loaded));
-  return FittedModel(test::must(fits.fit(test::must(parse_plan(name)), {})).data);
+  return FittedModel(test::must(fits.fit(test::must(parse_plan(name)), {})).model->data());
 }
 
 void expect_equal(const FittedModel& one, const FittedModel& other) {
