@@ -386,8 +386,12 @@ void LiveSession::update_verdict() {
     const ModelInfo& info = models_.info(slot);
     if (its.errors.samples == 0 || its.tick.median_ns <= 0.0 || (of_model && models_.reference() == slot)) continue;
     const ModelTest::Tested* tested = live ? nullptr : test_.find(models_.model(slot).get());
-    judged.push_back({slot, info.name, info.paper, its.errors.within_jnd, its.errors.p99_error_over_jnd, its.tick,
-                      tested != nullptr ? &test_.errors(*tested).strokes : nullptr});
+    judged.push_back({{its.errors.within_jnd, its.errors.p99_error_over_jnd, its.tick.median_ns,
+                       tested != nullptr ? &test_.errors(*tested).strokes : nullptr},
+                      slot,
+                      info.name,
+                      info.paper,
+                      its.tick});
     if (info.takes_centres) paths_[slot][info.centres] = {its.tick.median_ns, its.errors.p99_error_over_jnd};
   }
   if (judged.empty()) return;

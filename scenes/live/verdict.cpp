@@ -38,15 +38,11 @@ std::string time_words(const Timing& one, const Timing& other) {
 }
 
 Verdict judge(const std::vector<JudgedModel>& judged, const std::string& reference) {
-  std::vector<Candidate> candidates;
-  for (const JudgedModel& one : judged)
-    candidates.push_back({one.within_jnd, one.p99_error_over_jnd, one.tick.median_ns, one.strokes});
-  const Ranking ranking = rank(candidates);
+  const Ranking ranking = rank({judged.begin(), judged.end()});
   const JudgedModel& chosen = judged[ranking.recommended];
   Verdict verdict;
   verdict.chosen = chosen.slot;
-  verdict.headline = reference.empty() ? recommendation(chosen.name, candidates[ranking.recommended])
-                                       : difference(chosen, reference) + ".";
+  verdict.headline = reference.empty() ? recommendation(chosen.name, chosen) : difference(chosen, reference) + ".";
   const auto lowest = std::ranges::min_element(judged, {}, &JudgedModel::p99_error_over_jnd) - judged.begin();
   if (const auto at = static_cast<std::size_t>(lowest); at != ranking.recommended && reference.empty())
     verdict.detail = " " + judged[at].name + " has a lower 99 % error, " +

@@ -12,14 +12,11 @@
 
 namespace palpate {
 
-// A model with its errors and times; those of all are over the same samples.
-struct JudgedModel {
+struct JudgedModel : Candidate {
   std::size_t slot = 0;
-  std::string name;
+  std::string name{};
   bool paper = false;  // a method on the measured force
-  double within_jnd = 0.0, p99_error_over_jnd = 0.0;
-  Timing tick;
-  const Draws* strokes = nullptr;  // of the test (Candidate)
+  Timing tick{};
 };
 
 struct Verdict {

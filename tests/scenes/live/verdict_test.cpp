@@ -8,7 +8,11 @@ namespace palpate {
 namespace {
 
 JudgedModel model(std::size_t slot, const char* name, bool paper, double over_jnd, double ns) {
-  return {slot, name, paper, over_jnd > 1.0 ? 0.98 - 0.1 * over_jnd : 0.995, over_jnd, {ns, 0.99 * ns, 1.01 * ns, ns}};
+  return {{over_jnd > 1.0 ? 0.98 - 0.1 * over_jnd : 0.995, over_jnd, ns},
+          slot,
+          name,
+          paper,
+          {ns, 0.99 * ns, 1.01 * ns, ns}};
 }
 
 // The sentence of the issue: ours against the most accurate one of the paper.
