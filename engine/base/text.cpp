@@ -58,6 +58,14 @@ std::string joined(const std::vector<std::string>& words, std::string_view betwe
   return text;
 }
 
+std::string replaced(std::string_view text, std::string_view from, std::string_view to) {
+  std::string result;
+  std::size_t at = 0;
+  for (std::size_t next; (next = text.find(from, at)) != std::string_view::npos; at = next + from.size())
+    result.append(text, at, next - at).append(to);
+  return result.append(text, at, std::string_view::npos);
+}
+
 std::string lower_ascii(std::string_view text) {
   std::string lower(text);
   for (char& c : lower)
@@ -119,9 +127,7 @@ std::string nearest_name(std::string_view word, const std::vector<std::string>& 
 std::string shell_word(const std::string& text) {
   constexpr std::string_view kPlain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./-+=:,@%";
   if (!text.empty() && text.find_first_not_of(kPlain) == std::string::npos) return text;
-  std::string quoted = "'";
-  for (const char letter : text) letter == '\'' ? quoted += "'\\''" : quoted += letter;
-  return quoted + "'";
+  return '\'' + replaced(text, "'", "'\\''") + '\'';
 }
 
 const char* parse_number(const char* begin, const char* end, double& value) {

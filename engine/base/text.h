@@ -14,6 +14,9 @@ std::string_view trimmed(std::string_view text);
 // "a, b, c"
 std::string joined(const std::vector<std::string>& words, std::string_view between = ", ");
 
+// `text` with `to` for every `from`.
+std::string replaced(std::string_view text, std::string_view from, std::string_view to);
+
 // `text` with A to Z replaced by a to z.
 std::string lower_ascii(std::string_view text);
 

@@ -40,10 +40,7 @@ struct Exhibit::Screens {
   }
   Rgb colour_of(const ExhibitModel& model) const { return slot_colour(shown.models, model.slot, style.theme()); }
 
-  std::string localised(std::string text) const {
-    if (const std::size_t at = text.find('.'); at != std::string::npos) text.replace(at, 1, words()("decimal"));
-    return text;
-  }
+  std::string localised(const std::string& text) const { return replaced(text, ".", words()("decimal")); }
   // The number with the digits that a reader needs.
   std::string number(double value) const {
     return value <= 0.0 ? "0" : localised(fixed(std::max(0.01, value), value < 1.0 ? 2 : 1));

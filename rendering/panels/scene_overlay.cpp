@@ -45,12 +45,10 @@ Headline headline_of(const Verdict& verdict, const UiStyle& style, const SceneAr
   if (verdict.headline.empty()) return {{}, {}, 0.0F, top, top};
   const float indent = verdict.chosen ? 1.1F * height_of(fonts.heading) : 0.0F;
   const float room = area.size.x - indent - 1.4F * line;
-  Headline headline{verdict.headline, {area.at.x + 0.7F * line + indent, top}, room, top, top};
+  Headline headline{{}, {area.at.x + 0.7F * line + indent, top}, room, top, top};
   // No line ends between a number and its unit.
-  std::string& words = headline.words;
-  for (const char* unit : {" %", " us"})
-    for (std::size_t i = 0; (i = words.find(unit, i)) != std::string::npos;) words.replace(i, 1, "\u00A0");
-  words = in_lines(words, room, fonts.heading);
+  const std::string& words = headline.words =
+      in_lines(replaced(replaced(verdict.headline, " %", "\u00A0%"), " us", "\u00A0us"), room, fonts.heading);
   headline.detail_px = headline.below_px = top + text_size(fonts.heading, words).y;
   if (!verdict.detail.empty()) {
     headline.detail_px += 0.1F * line;

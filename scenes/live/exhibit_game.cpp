@@ -8,16 +8,13 @@
 #include <utility>
 
 #include "engine/base/files.h"
+#include "engine/base/text.h"
 #include "engine/json/json_fields.h"
 
 namespace palpate {
 namespace {
 
 constexpr double kColumnOfTicks_s = 0.025;  // a longer gap between two ticks is a stall
-
-void replace(std::string& text, std::string_view sign, const std::string& by) {
-  if (const std::size_t at = text.find(sign); at != std::string::npos) text.replace(at, sign.size(), by);
-}
 
 }  // namespace
 
@@ -126,10 +123,7 @@ Result<ExhibitWords> ExhibitWords::parse(std::string_view text, const std::strin
 std::string ExhibitWords::operator()(const std::string& key, const std::string& one, const std::string& two) const {
   const auto found = texts_.find(key);
   if (found == texts_.end()) return key;
-  std::string text = found->second;
-  replace(text, "%1", one);
-  replace(text, "%2", two);
-  return text;
+  return replaced(replaced(found->second, "%1", one), "%2", two);
 }
 
 Result<std::vector<ExhibitWords>> read_exhibit_words(const std::string& folder) {

@@ -24,12 +24,7 @@ constexpr const char* kNothing = "–";
 
 std::string quoted_if_needed(const std::string& text) {
   if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-  std::string quoted(1, '"');
-  for (const char letter : text) {
-    if (letter == '"') quoted += '"';
-    quoted += letter;
-  }
-  return quoted + '"';
+  return '"' + replaced(text, "\"", "\"\"") + '"';
 }
 
 std::string csv_cell(const TableCell& cell) {
@@ -60,14 +55,6 @@ std::string under_html(const std::vector<TableCell>& row, std::size_t first, con
 bool is_text(const Table& table, std::size_t column) {
   return !table.rows.empty() &&
          std::ranges::all_of(table.rows, [&](const auto& row) { return row[column].is_string(); });
-}
-
-std::string replaced(std::string text, std::string_view from, std::string_view to) {
-  std::string result;
-  std::size_t at = 0;
-  for (std::size_t next; (next = text.find(from, at)) != std::string::npos; at = next + from.size())
-    result.append(text, at, next - at).append(to);
-  return result.append(text, at, std::string::npos);
 }
 
 // The spellings that gnuplot uses for a colour such as "#d8d8d8".
