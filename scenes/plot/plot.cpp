@@ -197,13 +197,10 @@ void merge_equal(std::vector<Series>& series) {
 
 std::vector<Panel> compared_forces(const std::string& title, const std::vector<ComparedModel>& models,
                                    const std::vector<ComparedMoment>& moments) {
-  const auto over_jnd = [&](const ComparedMoment& moment, std::size_t model) {
-    if (!moment.in_contact) return kNoValue;
-    return (moment.force_N[model] - moment.measured_N) / models[model].jnd.at(moment.measured_N);
-  };
   const auto worst_of = [&](const ComparedMoment& moment) {
     double worst = -1.0;
-    for (std::size_t i = 0; i < models.size(); ++i) worst = std::max(worst, std::abs(over_jnd(moment, i)));
+    for (std::size_t i = 0; i < models.size(); ++i)
+      worst = std::max(worst, std::abs(moment.over_jnd(i, models[i].jnd)));
     return worst;
   };
   Panel force;
@@ -232,7 +229,7 @@ std::vector<Panel> compared_forces(const std::string& title, const std::vector<C
     force.series[0].rows.push_back({shown.time_s, shown.measured_N});
     difference.series[0].rows.push_back({shown.time_s, 0.0, -1.0, 1.0});
     for (std::size_t i = 0; i < models.size(); ++i) {
-      const double over = over_jnd(shown, i);
+      const double over = shown.over_jnd(i, models[i].jnd);
       if (i == 0) of_first = std::max(of_first, 1.1 * std::abs(over));
       force.series[models.size() - i].rows.push_back({shown.time_s, shown.force_N[i]});
       difference.series[models.size() - i].rows.push_back({shown.time_s, over});

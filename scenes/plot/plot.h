@@ -123,6 +123,11 @@ struct ComparedMoment {
   double time_s = 0.0, measured_N = 0.0;
   bool in_contact = false;
   std::vector<double> force_N;  // one per model
+
+  // Model minus measurement over the JND; none in the air.
+  double over_jnd(std::size_t model, const JndLine& jnd) const {
+    return in_contact ? (force_N[model] - measured_N) / jnd.at(measured_N) : kNoValue;
+  }
 };
 
 struct ComparedModel {

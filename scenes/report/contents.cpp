@@ -350,12 +350,11 @@ std::string curves_json(const ReportData& data) {
   const std::vector<ComparedMoment>& moments = curves.moments;
   const JndLine& jnd = data.scene.jnd;
   const std::size_t count = curves.models.size();
-  const auto over_jnd = [&](const ComparedMoment& one, std::size_t model) {
-    return one.in_contact ? (one.force_N[model] - one.measured_N) / jnd.at(one.measured_N) : kNoValue;
-  };
   // The measured force, those of the models, and their differences in JND.
   const auto value = [&](const ComparedMoment& one, std::size_t column) {
-    return column == 0 ? one.measured_N : column <= count ? one.force_N[column - 1] : over_jnd(one, column - count - 1);
+    return column == 0       ? one.measured_N
+           : column <= count ? one.force_N[column - 1]
+                             : one.over_jnd(column - count - 1, jnd);
   };
   const std::vector<RecordingRow>& rows = curves.recording->rows;
   const std::size_t skipped = rows.size() - moments.size();
@@ -363,7 +362,7 @@ std::string curves_json(const ReportData& data) {
   nlohmann::ordered_json models = nlohmann::ordered_json::array();
   for (std::size_t k = 0; k < count; ++k) {
     const ModelResult& model = data.models[curves.models[k]];
-    const auto size = [&](const ComparedMoment& one) { return one.in_contact ? std::abs(over_jnd(one, k)) : -1.0; };
+    const auto size = [&](const ComparedMoment& one) { return one.in_contact ? std::abs(one.over_jnd(k, jnd)) : -1.0; };
     const auto worst = static_cast<std::size_t>(std::ranges::max_element(moments, {}, size) - moments.begin());
     for (std::size_t i = 0; i < moments.size(); ++i)
       if (std::abs(moments[i].time_s - moments[worst].time_s) < kWholeNear_s) whole[i] = true;
@@ -416,9 +415,7 @@ std::string curves_json(const ReportData& data) {
   const nlohmann::ordered_json about{{"models", models}, {"dots", dots}};
   std::string text = about.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
   text.replace(text.size() - 1, 1, ",\"rows\":[" + table + "]}");
-  // No end of the element within a name.
-  for (std::size_t at = 0; (at = text.find('<', at)) != std::string::npos;) text.replace(at, 1, "\\u003c");
-  return text;
+  return replaced(text, "<", "\\u003c");  // no end of the element within a name
 }
 
 }  // namespace palpate

@@ -22,24 +22,6 @@ constexpr double kPrepareSeconds = 1.0;   // estimate for one base
 constexpr double kEvaluateSeconds = 0.1;  // estimate for one model
 constexpr double kShownAir_s = 0.1;       // free air at the ends of the worst stretch
 
-// Combines the progress of parts of different lengths, which are given in expected seconds.
-class Progress {
- public:
-  Progress(FitControl whole, double total) : whole_(std::move(whole)), total_(total) {}
-
-  // The control of the next part.
-  FitControl next(double seconds) {
-    const double begin = std::min(1.0, done_ / total_);
-    done_ += seconds;
-    return whole_.part(begin, std::min(1.0, done_ / total_));
-  }
-
- private:
-  FitControl whole_;
-  double total_;
-  double done_ = 0.0;
-};
-
 class Measurement {
  public:
   Measurement(ReportData& data, bool quick, const FitControl& control)

@@ -29,6 +29,24 @@ namespace palpate {
 // test. `share`: of both durations. Errors: those of record_sensors.
 Result<std::vector<PreparedRecordingPointer>> virtual_recordings(const std::string& material, double share = 1.0);
 
+// Combines the progress of parts of different lengths, which are given in one unit.
+class Progress {
+ public:
+  Progress(FitControl whole, double total) : whole_(std::move(whole)), total_(total) {}
+
+  // The control of the next part.
+  FitControl next(double length) {
+    const double begin = std::min(1.0, done_ / total_);
+    done_ += length;
+    return whole_.part(begin, std::min(1.0, done_ / total_));
+  }
+
+ private:
+  FitControl whole_;
+  double total_;
+  double done_ = 0.0;
+};
+
 inline double largest_force_N(const Recording& recording) {
   return std::ranges::max_element(recording.rows, {}, &RecordingRow::force_N)->force_N;
 }

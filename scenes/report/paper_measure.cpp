@@ -55,7 +55,10 @@ std::uint32_t colour_of(std::size_t which) {
 
 class PaperMeasurement {
  public:
-  PaperMeasurement(bool quick, const FitControl& control) : control_(control) { data_.quick = quick; }
+  // The number of parts is an estimate.
+  PaperMeasurement(bool quick, const FitControl& control) : progress_(control, quick ? 140.0 : 290.0) {
+    data_.quick = quick;
+  }
 
   Result<PaperData> run() {
     const auto scene = load_scene("silicone_block");
@@ -70,13 +73,7 @@ class PaperMeasurement {
   }
 
  private:
-  // Begins the next of the parts, and returns its control.
-  FitControl part() {
-    done_ += 1.0;
-    const double parts = data_.quick ? 140.0 : 290.0;
-    return {
-        [this, parts](double fraction) { return control_.may_continue(std::min(0.99, (done_ + fraction) / parts)); }};
-  }
+  FitControl part() { return progress_.next(1.0); }
 
   // The processor time of the fastest of several rounds of `work`, which may fail.
   template <typename Work>
@@ -289,8 +286,7 @@ class PaperMeasurement {
     return {};
   }
 
-  const FitControl& control_;
-  double done_ = 0.0;
+  Progress progress_;
   Scene scene_;
   PaperData data_;
   std::optional<OpenChoices> direct_, centres_;
