@@ -5,7 +5,7 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <atomic>
+#include <array>
 #include <csignal>
 #include <cstring>
 #include <filesystem>
@@ -21,19 +21,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The state of a run, in memory that all its processes share. A message longer than its place is cut.
-struct Shared {
-  static constexpr std::size_t kMessage = 1024;
-  std::atomic<std::size_t> next{0}, done{0};
-  char problems[1][kMessage];  // as many as there are jobs
-
-  static Shared* make(std::size_t jobs) {
-    void* const memory =
-        mmap(nullptr, sizeof(Shared) + jobs * kMessage, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
-    return memory == MAP_FAILED ? nullptr : new (memory) Shared;  // anonymous memory is zero
-  }
-};
-static_assert(std::atomic<std::size_t>::is_always_lock_free);
+// Why a job has failed, in memory that it shares with this process; a longer message is cut.
+using Problem = std::array<char, 1024>;
 
 struct Job {
   fs::path recording, result;
@@ -71,22 +60,42 @@ bool is_done(const Job& job) {
   return !error && made >= fs::last_write_time(job.recording, error) && !error;
 }
 
-[[noreturn]] void work(const FolderRun& run, const std::vector<Job>& jobs, Shared& shared) {
+[[noreturn]] void work(const FolderRun& run, const Job& job, Problem& problem) {
   prctl(PR_SET_PDEATHSIG, SIGTERM);  // ends with the program
   limit_threads(1);
   hide_progress();
   if (const int nowhere = open("/dev/null", O_WRONLY | O_CLOEXEC); nowhere >= 0) dup2(nowhere, STDOUT_FILENO);
-  for (std::size_t i = shared.next++; i < jobs.size() && stop_requested() == 0; i = shared.next++) {
-    if (const Status done = run.job(jobs[i].recording.string(), jobs[i].result.string()); !done)
-      std::strncpy(shared.problems[i], done.error().message.c_str(), Shared::kMessage - 1);
-    ++shared.done;
-  }
+  if (const Status done = run.job(job.recording.string(), job.result.string()); !done)
+    std::strncpy(problem.data(), done.error().message.c_str(), problem.size() - 1);
   _exit(0);
 }
 
-// `left`: the jobs whose messages are in `shared`.
+// Runs the jobs, each in a process of its own. Returns false if the user has stopped them.
+Result<bool> run_jobs(const FolderRun& run, const std::vector<Job>& jobs, Problem* problems) {
+  ProgressLine line(run.label);
+  std::vector<pid_t> workers;
+  bool stopped = false;
+  for (std::size_t begun = 0; !workers.empty() || (begun < jobs.size() && !stopped);) {
+    if (begun < jobs.size() && !stopped && workers.size() < static_cast<std::size_t>(thread_count())) {
+      const pid_t child = fork();
+      if (child == 0) work(run, jobs[begun], problems[begun]);
+      if (child < 0 && workers.empty()) return Error{"cannot start a process"};
+      if (child > 0) workers.push_back(child), ++begun;
+    }
+    const double share = static_cast<double>(begun - workers.size()) / static_cast<double>(jobs.size());
+    if (!line.update(share) && !std::exchange(stopped, true))
+      for (const pid_t child : workers) kill(child, SIGTERM);
+    if (const pid_t ended = waitpid(-1, nullptr, WNOHANG); ended > 0)
+      std::erase(workers, ended);
+    else
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  return !stopped;
+}
+
+// `problems`: of the jobs in `left`.
 Status write_table(const FolderRun& run, const std::vector<Job>& jobs, const std::vector<Job>& left,
-                   const Shared& shared) {
+                   const Problem* problems) {
   std::vector<std::string> keys;
   std::vector<FolderRun::Row> rows;
   for (const Job& job : jobs) {
@@ -103,7 +112,7 @@ Status write_table(const FolderRun& run, const std::vector<Job>& jobs, const std
       table.add({key, ""}, found != rows[i].end() ? found->second : nlohmann::ordered_json(""));
     }
     const auto at = std::ranges::find(left, jobs[i].recording, &Job::recording);
-    table.add({"problem", ""}, at != left.end() ? shared.problems[at - left.begin()] : "");
+    table.add({"problem", ""}, at != left.end() ? problems[at - left.begin()].data() : "");
   }
   return write_file_atomically(run.out + "/" + run.table + ".csv", table_csv(table), true);
 }
@@ -140,43 +149,28 @@ Status run_folder(const FolderRun& run) {
   if (const Status entered = enter(run); !entered) return entered;
   std::vector<Job> left;
   std::ranges::copy_if(*jobs, std::back_inserter(left), [&](const Job& job) { return run.force || !is_done(job); });
-  Shared* const shared = Shared::make(jobs->size());
-  if (shared == nullptr) return Error{"out of memory"};
-  ProgressLine line(run.label);
-  std::vector<pid_t> workers;
-  const std::size_t count = std::min(left.size(), static_cast<std::size_t>(thread_count()));
-  for (std::size_t i = 0; i < count; ++i) {
-    const pid_t child = fork();
-    if (child == 0) work(run, left, *shared);
-    if (child > 0) workers.push_back(child);
-  }
-  if (workers.empty() && !left.empty()) return Error{"cannot start a process"};
-  bool stopped = false;
-  for (std::size_t ended = 0; ended < workers.size();) {
-    const double share = static_cast<double>(shared->done) / static_cast<double>(std::max<std::size_t>(1, left.size()));
-    if (!line.update(share) && !std::exchange(stopped, true))
-      for (const pid_t child : workers) kill(child, SIGTERM);
-    if (waitpid(-1, nullptr, WNOHANG) > 0)
-      ++ended;
-    else
-      std::this_thread::sleep_for(std::chrono::milliseconds(5));
-  }
-  if (const Status written = write_table(run, *jobs, left, *shared); !written) return written;
-  std::string problems;
+  const std::size_t bytes = std::max<std::size_t>(1, left.size()) * sizeof(Problem);
+  void* const memory = mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);  // all zero
+  if (memory == MAP_FAILED) return Error{"out of memory"};
+  auto* const problems = static_cast<Problem*>(memory);
+  const auto complete = run_jobs(run, left, problems);
+  if (!complete) return complete.error();
+  if (const Status written = write_table(run, *jobs, left, problems); !written) return written;
+  std::string words;
   std::size_t failed = 0;
   for (std::size_t i = 0; i < left.size(); ++i) {
     if (is_done(left[i])) continue;
     ++failed;
-    problems += "\n  " + left[i].recording.string() + ": " +
-                (shared->problems[i][0] != '\0' ? shared->problems[i]
-                 : stopped                      ? "interrupted"
-                                                : "its process ended");
+    words += "\n  " + left[i].recording.string() + ": " +
+             (problems[i][0] != '\0' ? problems[i].data()
+              : *complete            ? "its process ended"
+                                     : "interrupted");
   }
   std::printf("%zu of %zu recordings are done, %zu of them before; table %s/%s.csv\n", jobs->size() - failed,
               jobs->size(), jobs->size() - left.size(), run.out.c_str(), run.table.c_str());
   if (failed == 0) return {};
   return Error{std::to_string(failed) + " of " + std::to_string(jobs->size()) +
-               " recordings are not done; the same command continues:" + problems};
+               " recordings are not done; the same command continues:" + words};
 }
 
 }  // namespace palpate::cli
