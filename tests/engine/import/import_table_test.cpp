@@ -86,8 +86,7 @@ TEST(ImportTable, ReadsTheSamePressFromEveryRig) {
     if (name == "README.md") continue;
     SCOPED_TRACE(name);
     ++files;
-    const auto table = import_table(entry.path().string(), request_of(options[name]));
-    ASSERT_TRUE(table.ok()) << table.error().message;
+    const Result table = test::must(import_table(entry.path().string(), request_of(options[name])));
     ASSERT_EQ(table->recording.rows.size(), 24u);
     for (std::size_t i = 0; i < 24; ++i) {
       const RecordingRow expected = press_row(i);
@@ -189,8 +188,7 @@ TEST(ImportTable, OneReadingIsImported) {
   };
   for (const Case& one : cases) {
     SCOPED_TRACE(one.what);
-    const auto table = import_bytes(one.text, one.options);
-    ASSERT_TRUE(table.ok()) << table.error().message;
+    const Result table = test::must(import_bytes(one.text, one.options));
     const auto& rows = table->recording.rows;
     ASSERT_EQ(rows.size(), static_cast<std::size_t>(kRows)) << joined(row_words(*table), "\n");
     for (int i = 0; i < kRows; ++i) {
@@ -344,8 +342,7 @@ TEST(ImportTable, ARowThatIsLeftOutLeavesItsTime) {
   std::string text = "x (mm),F (N)\n";
   for (int i = 0; i < 100; ++i)
     text += fixed(position_mm(i), 3) + (i >= 40 && i < 50 ? ",OL\n" : "," + fixed(force_N(i), 3) + "\n");
-  const auto table = import_bytes(text, "--rate 100 --skip-bad-rows 10");
-  ASSERT_TRUE(table.ok()) << table.error().message;
+  const Result table = test::must(import_bytes(text, "--rate 100 --skip-bad-rows 10"));
   ASSERT_EQ(table->recording.rows.size(), 90u);
   EXPECT_NEAR(table->recording.rows.back().time_s, 0.99, 1e-9);
   ASSERT_EQ(table->left_out.size(), 1u);
@@ -357,14 +354,12 @@ TEST(ImportTable, ARowThatIsLeftOutLeavesItsTime) {
     for (int i = 0; i < 100; ++i)
       all += (i >= 40 && i < 50 ? lost : fixed(position_mm(i), 3) + "," + fixed(force_N(i), 3)) + "\n";
     EXPECT_NE(message(all, "--rate 100"), "accepted") << lost;
-    const auto kept = import_bytes(all, "--rate 100 --skip-bad-rows 10");
-    ASSERT_TRUE(kept.ok()) << kept.error().message;
+    const Result kept = test::must(import_bytes(all, "--rate 100 --skip-bad-rows 10"));
     EXPECT_EQ(kept->recording.rows.size(), 90u) << lost;
     EXPECT_NEAR(kept->recording.rows.back().time_s, 0.99, 1e-9) << lost;
   }
   const std::string counted = table_of("seq,x (mm),F (N)", "%i,%x,%f", 0, 40) + table_of("", "%i,%x,%f", 50, 100);
-  const auto counts = import_bytes(counted, "--rate 100");
-  ASSERT_TRUE(counts.ok()) << counts.error().message;
+  const Result counts = test::must(import_bytes(counted, "--rate 100"));
   EXPECT_NEAR(counts->recording.rows.back().time_s, 0.99, 1e-9);
   EXPECT_TRUE(test::has_parts(joined(counts->notes), {"counts the rows and skips 10 of them"}));
   std::string coarse = "Time;x (mm);F (N)\n";
@@ -374,8 +369,7 @@ TEST(ImportTable, ARowThatIsLeftOutLeavesItsTime) {
   const std::string refused = message(coarse, "--skip-bad-rows 1");
   EXPECT_TRUE(test::has_parts(refused, {"in 190 rows with other", "--skip-bad-rows 1 --rate 20  # the mean rate"}))
       << refused;
-  const auto clock = import_bytes(coarse, "--skip-bad-rows 1 --rate 20");
-  ASSERT_TRUE(clock.ok()) << clock.error().message;
+  const Result clock = test::must(import_bytes(coarse, "--skip-bad-rows 1 --rate 20"));
   EXPECT_NEAR(clock->recording.rows.back().time_s, 9.95, 1e-9);
 }
 
@@ -386,8 +380,7 @@ TEST(ImportTable, TwoExplicitClocksBecomeOne) {
   for (int i = 0; i < 400; ++i)
     text += (i < 200 ? fixed(0.004 + 0.02 * i, 3) + "," + fixed(x_mm(0.004 + 0.02 * i), 4) : std::string(",")) + "," +
             fixed(0.01 * i, 2) + "," + fixed(2.0 * x_mm(0.01 * i), 4) + "\n";
-  const auto table = import_bytes(text);
-  ASSERT_TRUE(table.ok()) << table.error().message;
+  const Result table = test::must(import_bytes(text));
   const auto& rows = table->recording.rows;
   ASSERT_EQ(rows.size(), 398u);
   for (const RecordingRow& row : rows) EXPECT_NEAR(2e3 * row.position_m, row.force_N, 0.03) << row.time_s;
@@ -402,15 +395,13 @@ TEST(ImportTable, DayAndMonthAreDecidedOnceForTheColumn) {
     for (int i = 0; i < 120; ++i)
       text += all_replaced(i < 60 ? before : after, "%", fixed(i < 60 ? 54.0 + 0.1 * i : 0.1 * (i - 60), 3)) + "," +
               std::to_string(i) + ",2" + std::to_string(i) + "\n";
-    const auto table = import_bytes(all_replaced(text, ":0.", ":00."));
-    ASSERT_TRUE(table.ok()) << table.error().message;
+    const Result table = test::must(import_bytes(all_replaced(text, ":0.", ":00.")));
     EXPECT_NEAR(table->recording.rows.back().time_s, 11.9, 1e-6) << form;
   }
 }
 
 TEST(ImportTable, TheLimitsAreThoseAfterTheCorrections) {
-  auto table = import_bytes(table_of("t_s,z_m,F_N", "%t,1.2%i,%f", 10, 99));
-  ASSERT_TRUE(table.ok()) << table.error().message;
+  Result table = test::must(import_bytes(table_of("t_s,z_m,F_N", "%t,1.2%i,%f", 10, 99)));
   const ImportRequest request = request_of("--out r.csv");
   EXPECT_EQ(
       check_limits("rig.txt", request, *table).error().message,

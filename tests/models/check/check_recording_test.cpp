@@ -260,6 +260,8 @@ TEST(CheckRecording, BlamesNoRealRecording) {
       if (entry.path().extension() != ".csv") continue;
       const auto checked = check_recording_file(entry.path().string(), CheckRequest{});
       ASSERT_TRUE(checked.ok()) << checked.error().message;
+      RecordingFaults faults;
+      EXPECT_TRUE(read_prepared_recording(entry.path().string(), faults).ok() && !faults.any()) << entry.path();
       EXPECT_STRNE(checked->check.verdict(), "unusable") << entry.path() << "\n" << all_of(checked->check);
       EXPECT_EQ(find(checked->check, "lag"), nullptr) << entry.path() << "\n" << all_of(checked->check);
       // The force sensor of one rig drifts by 0.2 to 0.4 N.

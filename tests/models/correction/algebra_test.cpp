@@ -12,6 +12,7 @@
 
 #include "models/model/correction.h"
 #include "models/model/kernels.h"
+#include "tests/support/message_parts.h"
 #include "tests/support/plain_rbf.h"
 #include "tests/support/random_points.h"
 
@@ -54,8 +55,7 @@ TEST(PenalisedWeights, WithEverySiteACentreItIsTheSmoothingSpline) {
       sites.kernel = kernel;
       sites.smoothing = smoothing;
       const auto some = solved(sites, sites.points);
-      const auto all = solve_direct(sites);
-      ASSERT_TRUE(all.ok());
+      const Result all = test::must(solve_direct(sites));
       // Two algorithms for systems with condition numbers up to some 1e6.
       EXPECT_LT(test::largest_difference(some, all->function(), sites.points), 1e-7) << kernel_name(kernel);
     }
@@ -177,8 +177,7 @@ TEST_F(AgainstScipy, FitsTheSameWeightsTailAndValues) {
     const double smoothing = item.at("smoothing").get<double>();
     sites.smoothing = smoothing;
     sites.kernel = *kernel_from_name(name);
-    const auto solved = solve_direct(sites);
-    ASSERT_TRUE(solved.ok());
+    const Result solved = test::must(solve_direct(sites));
     const RbfFunction& fitted = solved->function();
     SCOPED_TRACE(name + ", " + std::to_string(sites.dimension()) + "-D, smoothing " + std::to_string(smoothing));
     const double tolerance = 1e-13 * condition_of(sites);

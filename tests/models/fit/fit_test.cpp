@@ -74,8 +74,7 @@ void expect_safe(const ModelData& data) {
 
 // Fits every method. Each model must have at least the share `least_within` of the training samples within the JND.
 void expect_all_methods(const Recordings& recordings, Asked asked, double least_within) {
-  const auto prepared = prepare(recordings, asked);
-  ASSERT_TRUE(prepared.ok()) << prepared.error().message;
+  const Result prepared = test::must(prepare(recordings, asked));
   asked.plan.centres = 40;
   asked.plan.grid.assign(prepared->common.features.size(), 5);
   for (const ModelPlan& plan : plans_like(asked.plan)) {
@@ -156,8 +155,7 @@ TEST(Fit, EveryKernelAndThinning) {
       auto prepared = prepare({recording}, asked);
       ASSERT_TRUE(prepared.ok());
       prepared->correction->used = true;  // a correction regardless of cross-validation
-      const auto fit = fit_method(*prepared, asked.plan);
-      ASSERT_TRUE(fit.ok()) << fit.error().message;
+      const Result fit = test::must(fit_method(*prepared, asked.plan));
       EXPECT_EQ(rbf_of(fit->model->data().correction)->kernel, kernel);
       EXPECT_EQ(fit->kernel, kernel);
       EXPECT_GT(fit->rank, 1);
@@ -219,8 +217,7 @@ TEST(Fit, ACorrectionThatIsRejectedLeavesTheTrend) {
   ASSERT_TRUE(prepared.ok());
   prepared->correction->used = false;
   for (const ModelPlan& plan : plans_like(asked.plan)) {
-    const auto fit = fit_method(*prepared, plan);
-    ASSERT_TRUE(fit.ok());
+    const Result fit = test::must(fit_method(*prepared, plan));
     EXPECT_EQ(fit->model->data().name, "trend");
     EXPECT_EQ(fit->model->data().method, "trend");
     EXPECT_EQ(fit->model->data().correction, nullptr);
@@ -250,8 +247,7 @@ TEST(Fit, OnTheForceUsesWhatIsSelected) {
       prepared->common.scale.cwiseQuotient(fit->model->data().scale).asDiagonal() * prepared->sites.points;
   for (Eigen::Index j = 0; j < centres.cols(); ++j)
     EXPECT_EQ((sites.colwise() - centres.col(j)).colwise().norm().minCoeff(), 0.0);
-  const auto selected = fit_method(*prepared, asked.plan);
-  ASSERT_TRUE(selected.ok());
+  const Result selected = test::must(fit_method(*prepared, asked.plan));
   ASSERT_TRUE(selected->choices.has_value());
   EXPECT_EQ(selected->model->data().scale, prepared->common.scale_of(selected->choices->range_exponent));
   EXPECT_EQ(rbf_of(selected->model->data().correction)->kernel, selected->choices->kernel);

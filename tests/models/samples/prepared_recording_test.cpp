@@ -240,18 +240,5 @@ TEST(RecordingFaults, AHeldForceMayBeQuantisedAndJitter) {
   EXPECT_TRUE(remove_faults(late).held_force);
 }
 
-TEST(RecordingFaults, BlamesNoRealRecording) {
-  if (!std::filesystem::exists(test::real_data())) GTEST_SKIP() << "no real recordings here";
-  for (const std::filesystem::path& folder : {test::real_data(), test::real_data() / "../labs"}) {
-    if (!std::filesystem::exists(folder)) continue;
-    for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
-      if (entry.path().extension() != ".csv") continue;
-      RecordingFaults faults;
-      ASSERT_TRUE(read_prepared_recording(entry.path().string(), faults).ok()) << entry.path();
-      EXPECT_FALSE(faults.any()) << entry.path();
-    }
-  }
-}
-
 }  // namespace
 }  // namespace palpate

@@ -13,20 +13,25 @@
 #include "engine/recording/recording.h"
 #include "models/model/file/model_io.h"
 #include "tests/support/example_model.h"
+#include "tests/support/message_parts.h"
 #include "tests/support/session_frames.h"
 #include "tests/support/temporary_folder.h"
 
 namespace palpate {
 namespace {
 
+// A session of a model in `folder`, whose subfolder `data` receives the files of the user.
+std::unique_ptr<LiveSession> session_in(const test::TemporaryFolder& folder, const std::string& data) {
+  setenv("XDG_DATA_HOME", folder.file(data).c_str(), 1);
+  const ModelData model = test::example_model("greedy", KernelKind::cubic, test::paper_features(), 1);
+  EXPECT_TRUE(save_model(folder.file("m.json"), model, false).ok());
+  return test::must(LiveSession::open(test::session_request("skin", "hand", {folder.file("m.json")})));
+}
+
 // A long read must not block the window, because a blocked window releases the dead-man key.
 TEST(DemoFiles, ASecondFileDoesNotWaitForTheFirstInTheWindow) {
   const test::TemporaryFolder folder;
-  setenv("XDG_DATA_HOME", folder.path().c_str(), 1);
-  const ModelData model = test::example_model("greedy", KernelKind::cubic, test::paper_features(), 1);
-  ASSERT_TRUE(save_model(folder.file("m.json"), model, false).ok());
-  auto session = LiveSession::open(test::session_request("skin", "hand", {folder.file("m.json")}));
-  ASSERT_TRUE(session.ok()) << session.error().message;
+  const auto session = session_in(folder, "");
 
   std::promise<void> gate;
   const std::shared_future<void> opened = gate.get_future().share();
@@ -40,12 +45,12 @@ TEST(DemoFiles, ASecondFileDoesNotWaitForTheFirstInTheWindow) {
   const auto began = std::chrono::steady_clock::now();
   files.open_recording("a.csv");
   files.open_recording("b.csv");
-  files.update(**session);
+  files.update(*session);
   EXPECT_LT(std::chrono::steady_clock::now() - began, std::chrono::seconds(5));
   EXPECT_FALSE(view.dialogs.recording_roles.any());
   gate.set_value();
   for (int i = 0; i < 2000 && view.dialogs.recording_roles.recordings.size() < 2; ++i) {
-    files.update(**session);
+    files.update(*session);
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
   }
   ASSERT_EQ(view.dialogs.recording_roles.recordings.size(), 2u) << "none is lost";
@@ -55,12 +60,8 @@ TEST(DemoFiles, ASecondFileDoesNotWaitForTheFirstInTheWindow) {
 // Two saves within a second, and a window that closes while another file is still being read.
 TEST(DemoFiles, SavesThatWereRequestedAreCompletedWhenTheWindowCloses) {
   const test::TemporaryFolder folder;
-  setenv("XDG_DATA_HOME", folder.path().c_str(), 1);
-  const ModelData model = test::example_model("greedy", KernelKind::cubic, test::paper_features(), 1);
-  ASSERT_TRUE(save_model(folder.file("m.json"), model, false).ok());
-  auto session = LiveSession::open(test::session_request("skin", "hand", {folder.file("m.json")}));
-  ASSERT_TRUE(session.ok()) << session.error().message;
-  ASSERT_TRUE(test::frames_until(**session, [&] { return (*session)->comparison().history().size() > 100; }));
+  const auto session = session_in(folder, "");
+  ASSERT_TRUE(test::frames_until(*session, [&] { return session->comparison().history().size() > 100; }));
   std::promise<void> gate;
   const std::shared_future<void> opened = gate.get_future().share();
   ViewState view;
@@ -76,8 +77,8 @@ TEST(DemoFiles, SavesThatWereRequestedAreCompletedWhenTheWindowCloses) {
           return ConvertedRecording{path, {}};
         });
     files.open_recording("a.csv");
-    files.update(**session);
-    for (int i = 0; i < 2; ++i) files.save_curves(**session, window_view(**session, view), CurveColumns());
+    files.update(*session);
+    for (int i = 0; i < 2; ++i) files.save_curves(*session, window_view(*session, view), CurveColumns());
     gate.set_value();
   }
   EXPECT_EQ(problems, std::vector<std::string>());
@@ -90,11 +91,7 @@ TEST(DemoFiles, SavesThatWereRequestedAreCompletedWhenTheWindowCloses) {
 
 TEST(DemoFiles, AnotherProgramsTableIsOfferedAsARecordingWithTheGuesses) {
   const test::TemporaryFolder folder;
-  setenv("XDG_DATA_HOME", folder.file("data").c_str(), 1);
-  const ModelData model = test::example_model("greedy", KernelKind::cubic, test::paper_features(), 1);
-  ASSERT_TRUE(save_model(folder.file("m.json"), model, false).ok());
-  auto session = LiveSession::open(test::session_request("skin", "hand", {folder.file("m.json")}));
-  ASSERT_TRUE(session.ok()) << session.error().message;
+  const auto session = session_in(folder, "data");
   const std::string foreign = folder.file("trial.txt");
   std::ofstream file(foreign);
   file << "Zeit [s];Weg [mm];Kraft [N]\n";
@@ -104,9 +101,9 @@ TEST(DemoFiles, AnotherProgramsTableIsOfferedAsARecordingWithTheGuesses) {
   ViewState view;
   std::vector<std::string> told;
   DemoFiles files(view, [&](const std::string& text, bool) { told.push_back(text); });
-  files.open(foreign, **session);
+  files.open(foreign, *session);
   for (int i = 0; i < 2000 && !view.dialogs.recording_roles.any(); ++i) {
-    files.update(**session);
+    files.update(*session);
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
   }
   EXPECT_EQ(view.dialogs.recording_roles.problem, "");
@@ -115,8 +112,7 @@ TEST(DemoFiles, AnotherProgramsTableIsOfferedAsARecordingWithTheGuesses) {
   ASSERT_GE(offered.words.size(), 4u);
   EXPECT_EQ(offered.words[3].rfind("position: column 2 \"Weg [mm]\" ", 0), 0u) << offered.words[3];
   EXPECT_EQ(offered.path.rfind(folder.file("data/"), 0), 0u) << offered.path;
-  const auto recording = read_recording(offered.path);
-  ASSERT_TRUE(recording.ok()) << recording.error().message;
+  const Result recording = test::must(read_recording(offered.path));
   EXPECT_EQ(recording->rows.size(), 200u);
   EXPECT_EQ(view.settings.recent, std::vector<std::string>{foreign});
   EXPECT_EQ(told.back(), "imported " + foreign + " as " + offered.path) << "no copy without a word";
@@ -131,8 +127,7 @@ TEST(Settings, ComeBackAsTheyWere) {
   const std::string path = folder.file("window.json");
   ASSERT_TRUE(write_settings(path, settings).ok());
   ASSERT_TRUE(write_settings(path, settings).ok()) << "again";
-  const auto back = read_settings(path);
-  ASSERT_TRUE(back.ok());
+  const Result back = test::must(read_settings(path));
   EXPECT_EQ(*back, settings);
   settings.blocks = 2;
   ASSERT_TRUE(write_settings(path, settings).ok());
@@ -141,12 +136,10 @@ TEST(Settings, ComeBackAsTheyWere) {
 
 TEST(Settings, AreNoReasonNotToStart) {
   const test::TemporaryFolder folder;
-  const auto missing = read_settings(folder.file("none.json"));
-  ASSERT_TRUE(missing.ok());
+  const Result missing = test::must(read_settings(folder.file("none.json")));
   EXPECT_EQ(*missing, Settings{});
   std::ofstream(folder.file("odd.json")) << R"({"blocks": 3, "theme": 7, "text_size": 99})";
-  const auto odd = read_settings(folder.file("odd.json"));
-  ASSERT_TRUE(odd.ok());
+  const Result odd = test::must(read_settings(folder.file("odd.json")));
   Settings expected;
   expected.text_size = kLargestText;
   EXPECT_EQ(*odd, expected);

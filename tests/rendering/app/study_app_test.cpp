@@ -90,8 +90,7 @@ TEST_F(StudyAppTest, StoresTheAnswerToForcesAndToStrokes) {
     press(GLFW_KEY_ENTER);
     EXPECT_TRUE(app_->closing());
     app_.reset();
-    const auto data = read_study(strokes ? "discriminate-S01.csv" : "study-S01.csv");
-    ASSERT_TRUE(data.ok()) << data.error().message;
+    const Result data = test::must(read_study(strokes ? "discriminate-S01.csv" : "study-S01.csv"));
     ASSERT_EQ(data->records.size(), 1u);
     const StudyRecord& record = data->records.front();
     EXPECT_EQ(record.answered_second, second);

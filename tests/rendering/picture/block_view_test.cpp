@@ -10,6 +10,7 @@
 #include <cstdlib>
 
 #include "models/correction/methods.h"
+#include "tests/support/message_parts.h"
 #include "tests/support/virtual_display.h"
 
 namespace palpate {
@@ -25,8 +26,7 @@ class BlockViewTest : public ::testing::Test {
   void SetUp() override {
     window_ = test::open_gl_window(kWholeWidth, kWholeHeight);
     ASSERT_NE(window_, nullptr);
-    const auto scene = load_scene("silicone_block");
-    ASSERT_TRUE(scene.ok()) << scene.error().message;
+    const Result scene = test::must(load_scene("silicone_block"));
     scene_ = *scene;
   }
   void TearDown() override {
@@ -175,8 +175,7 @@ TEST_F(BlockViewTest, WhatCarriesAMeaningIsSeenInBothThemes) {
   constexpr double kRows = 0.9;
   constexpr float kAway_m = -1.0F, kLifted_m = -0.012F;
   for (const char* name : {"silicone_block", "stiff_block", "foam_block"}) {
-    const auto scene = load_scene(name);
-    ASSERT_TRUE(scene.ok());
+    const Result scene = test::must(load_scene(name));
     scene_ = *scene;
     const auto one = view();
     const int middle = static_cast<int>(one->on_screen(0, 1, {0.0F, 0.0F, 0.0F}, {kWholeWidth, kWholeHeight}).y);
@@ -243,8 +242,7 @@ TEST_F(BlockViewTest, TheErrorFillsTheCutAndGrowsAHaloAboveOneJnd) {
 
 // A press through the whole dome changes the picture around it, but not the rim of the block.
 TEST_F(BlockViewTest, ADomeSnapsThroughOnABlockThatStays) {
-  const auto scene = load_scene("button");
-  ASSERT_TRUE(scene.ok());
+  const Result scene = test::must(load_scene("button"));
   scene_ = *scene;
   const auto one = view();
   BlockPose rest;

@@ -11,6 +11,7 @@
 
 #include "models/correction/methods.h"
 #include "scenes/scene/scene.h"
+#include "tests/support/message_parts.h"
 
 namespace palpate {
 namespace {
@@ -63,11 +64,9 @@ TEST(Colours, WhatCarriesAMeaningIsSeenInBothThemes) {
 
 // Arrow, probe, frame and the coloured dent have an outline where they are in front of a block.
 TEST(Colours, AnOutlineIsSeenOnEveryBlockAndBesideEveryError) {
-  const auto names = scene_names();
-  ASSERT_TRUE(names.ok());
+  const Result names = test::must(scene_names());
   for (const std::string& name : *names) {
-    const auto scene = load_scene(name);
-    ASSERT_TRUE(scene.ok()) << scene.error().message;
+    const Result scene = test::must(load_scene(name));
     const Rgb block = hex(scene->block_colour);
     EXPECT_GE(contrast(outline_on(block), block), kLeastContrast) << name;
     for (double error = 0.0; error <= 2.0; error += 0.1) {
