@@ -289,8 +289,7 @@ std::string ByteStream::end_words() noexcept {
 
 namespace {
 
-constexpr std::size_t kLongestTarget = 400;  // in messages
-constexpr int kRead_ms = 50;                 // short, so that the reader thread ends soon after it is stopped
+constexpr int kRead_ms = 50;  // short, so that the reader thread ends soon after it is stopped
 // A board that resets takes two seconds; a program with an SDK may search for its device first.
 constexpr double kFirstFrame_s = 4.0, kFirstFrameOfProgram_s = 20.0;
 // Rate, clock and sequence of the first frames are good in one of so many trials, because a program may pause while it
@@ -441,7 +440,7 @@ const DeviceProtocol kBridgeProtocol = {
 };
 
 BridgeBus::BridgeBus(std::string target) : target_(std::move(target)) {
-  info_.path = "bridge:" + printable(target_, kLongestTarget);
+  info_.path = "bridge:" + printable(target_, kLongestName);
 }
 
 Result<std::unique_ptr<DeviceConnection>> BridgeBus::open(const DeviceNode&) {
