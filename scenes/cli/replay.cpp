@@ -31,11 +31,9 @@ struct Options {
 
 struct ReplayedModel {
   LoadedModel loaded;
-  ErrorSummary as_recorded;
-  ErrorSummary surface_moved, beginning_moved;
-  double beginning_m = 0.0;         // of `beginning_moved`; 0: there is none
-  ErrorSummary force_zeroed;        // with the force of the recording's free air subtracted; empty where it is 0
-  BoundFigures bound, bound_moved;  // as recorded, with the surface moved
+  ErrorSummary as_recorded, surface_moved, beginning_moved;
+  double beginning_m = 0.0;   // of `beginning_moved`; 0: there is none
+  ErrorSummary force_zeroed;  // with the force of the recording's free air subtracted; empty where it is 0
   OffsetEstimate surface;
   ModelTiming time;
   std::string began;  // how the stream began (began_words)
@@ -113,10 +111,11 @@ Table models_table(const ReplayedRecording& replayed, bool all) {
     add("", "BEGINNING MOVED WITHIN JND %", one.beginning_m != 0.0 ? one.beginning_moved.within_jnd : kNoNumber,
         kInPercent, 2);
     add("surface_identified", "", one.surface.identified);
-    add("predicted_error.bound_95_held", "WITHIN BOUND %", one.bound.coverage, kInPercent, 1);
-    add("predicted_error.bound_95_held_moved", "ALIGNED WITHIN BOUND %", one.bound_moved.coverage, kInPercent, 1);
-    add("predicted_error.median_bound_N", "", one.bound.median_N);
-    add("predicted_error.median_bound_over_jnd", "BOUND JND", one.bound.median_over_jnd, 1.0, 2);
+    add("predicted_error.bound_95_held", "WITHIN BOUND %", one.as_recorded.bound.coverage, kInPercent, 1);
+    add("predicted_error.bound_95_held_moved", "ALIGNED WITHIN BOUND %", one.surface_moved.bound.coverage, kInPercent,
+        1);
+    add("predicted_error.median_bound_N", "", one.as_recorded.bound.median_N);
+    add("predicted_error.median_bound_over_jnd", "BOUND JND", one.as_recorded.bound.median_over_jnd, 1.0, 2);
   }
   return table;
 }
@@ -127,7 +126,7 @@ OrderedJson recording_json(const ReplayedRecording& replayed) {
     const ReplayedModel& one = replayed.models[i];
     if (one.force_zeroed.samples == 0) list[i]["force_zeroed"] = nullptr;
     if (one.beginning_m == 0.0) list[i]["beginning_moved"] = nullptr;
-    if (!one.bound.has_bounds()) list[i]["predicted_error"] = nullptr;
+    if (!one.as_recorded.bound.has_bounds()) list[i]["predicted_error"] = nullptr;
     OrderedJson& bins = list[i]["bins"] = OrderedJson::array();
     for (const ForceBin& bin : one.as_recorded.bins) {
       bins.push_back({{"force_from_N", bin.force_from_N},
@@ -335,8 +334,7 @@ Result<ReplayedRecording> replay_one(const CheckedFile& checked, const Recording
     const auto& [recorded, moved, begins, surfaces, began, beginning_m] = evaluation->models[i];
     replayed.models.push_back({models[i], recorded.summary(), moved.summary(), begins.summary(), beginning_m,
                                zeroed.models.empty() ? ErrorSummary{} : zeroed.models[i].as_recorded.summary(),
-                               recorded.bounds(), moved.bounds(), surfaces.front(), times[i],
-                               began_words(models[i].model->data(), began)});
+                               surfaces.front(), times[i], began_words(models[i].model->data(), began)});
   }
   if (plot_path.empty()) return replayed;
   const Status drawn =

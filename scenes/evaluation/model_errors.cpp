@@ -210,6 +210,11 @@ void ModelErrors::add(double model_N, double measured_N, bool out_of_domain, dou
 ErrorSummary ModelErrors::summary() const {
   ErrorSummary summary = figures_.summary(jnd_);
   summary.p99_error_over_jnd = static_cast<double>(quantile_of(ratios_, 99));
+  // Outside its surface a model returns 0 N with certainty, whether it has a bound or not.
+  if (std::ranges::none_of(bounds_N_, [](float bound_N) { return bound_N > 0.0F; })) return summary;
+  const auto median_N = static_cast<double>(median_of(bounds_N_));
+  summary.bound = {static_cast<double>(covered_) / static_cast<double>(bounds_N_.size()), median_N,
+                   median_N <= largest_force_N_ ? static_cast<double>(median_of(bounds_over_jnd_)) : kUnknown};
   return summary;
 }
 
@@ -238,14 +243,6 @@ UnitErrors ModelErrors::unit_errors() const {
   }
   unit_errors.drawn_units = unit_errors.units_are_recordings ? resample(ratios_, bounds) : unit_errors.drawn_strokes;
   return unit_errors;
-}
-
-BoundFigures ModelErrors::bounds() const {
-  // Outside its surface a model returns 0 N with certainty, whether it has a bound or not.
-  if (std::ranges::none_of(bounds_N_, [](float bound_N) { return bound_N > 0.0F; })) return {};
-  const auto median_N = static_cast<double>(median_of(bounds_N_));
-  return {static_cast<double>(covered_) / static_cast<double>(bounds_N_.size()), median_N,
-          median_N <= largest_force_N_ ? static_cast<double>(median_of(bounds_over_jnd_)) : kUnknown};
 }
 
 Ranking rank(const std::vector<Candidate>& candidates, double budget_ns) {

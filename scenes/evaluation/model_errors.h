@@ -82,6 +82,17 @@ struct ForceBin {
   Moments relative;    // error / force, of the samples with a force other than 0
 };
 
+inline constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+
+// A model's predicted 95 % error bounds. All figures are NaN for a model without bounds.
+struct BoundFigures {
+  double coverage = kUnknown;         // share of the errors within the bound
+  double median_N = kUnknown;         // of the bounds
+  double median_over_jnd = kUnknown;  // of bound / JND; NaN where `median_N` exceeds the largest force: it says nothing
+
+  bool has_bounds() const { return std::isfinite(coverage); }
+};
+
 // The figures of merit. Without samples every figure is 0 and `bins` is empty; check `samples` first.
 struct ErrorSummary {
   std::uint64_t samples = 0;
@@ -92,6 +103,7 @@ struct ErrorSummary {
   double max_error_over_jnd = 0.0;
   std::uint64_t out_of_domain_samples = 0;
   std::vector<ForceBin> bins;  // from 0 to the largest measured force
+  BoundFigures bound{};
 };
 
 class ErrorFigures {
@@ -104,7 +116,7 @@ class ErrorFigures {
   double within_jnd() const noexcept { return share(within_); }  // share of the samples with an error up to one JND
   double mean_error_over_jnd() const noexcept { return share(ratios_); }
   double max_error_over_jnd() const noexcept { return sum_.max_error_over_jnd; }
-  // All but the 99 % error, which needs every sample.
+  // All but the 99 % error and the bound, which need every sample.
   ErrorSummary summary(const JndLine& jnd) const;
 
  private:
@@ -123,7 +135,6 @@ struct Interval {
 
   bool known() const { return std::isfinite(low) && std::isfinite(high); }
 };
-inline constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
 // With two units t is 12.7, and the interval would be useless.
 inline constexpr std::size_t kLeastUnits = 3;
@@ -162,15 +173,6 @@ struct PairedDifference {
 };
 PairedDifference paired_difference(const UnitErrors& one, const UnitErrors& other);
 
-// A model's predicted 95 % error bounds. All figures are NaN for a model without bounds.
-struct BoundFigures {
-  double coverage = kUnknown;         // share of the errors within the bound
-  double median_N = kUnknown;         // of the bounds
-  double median_over_jnd = kUnknown;  // of bound / JND; NaN where `median_N` exceeds the largest force: it says nothing
-
-  bool has_bounds() const { return std::isfinite(coverage); }
-};
-
 // Detects the beginnings of strokes in one recording.
 class StrokeCounter {
  public:
@@ -195,7 +197,6 @@ class ModelErrors {
 
   ErrorSummary summary() const;
   UnitErrors unit_errors() const;
-  BoundFigures bounds() const;
 
  private:
   JndLine jnd_;

@@ -55,12 +55,12 @@ Table models_table(const ReportData& data) {
     table.add({"moved_rms_error_N", "RMS [mN]", kInMilli}, one.moved.rms_error_N);
     table.add({"untared_within_jnd", "force as recorded: ≤ JND [%]", kInPercent, 2},
               one.untared.samples > 0 ? one.untared.within_jnd : kNoNumber);
-    table.add({"bound_95_held", "≤ bound [%], moved", kInPercent, 1, 1}, one.bound.coverage);
-    table.add({"bound_95_held_moved", "", kInPercent, 1}, one.bound_moved.coverage);
-    table.add({"median_bound_N", ""}, one.bound.median_N);
-    const bool wide = one.bound.has_bounds() && !std::isfinite(one.bound.median_over_jnd);
+    table.add({"bound_95_held", "≤ bound [%], moved", kInPercent, 1, 1}, errors.bound.coverage);
+    table.add({"bound_95_held_moved", "", kInPercent, 1}, one.moved.bound.coverage);
+    table.add({"median_bound_N", ""}, errors.bound.median_N);
+    const bool wide = errors.bound.has_bounds() && !std::isfinite(errors.bound.median_over_jnd);
     table.add({"median_bound_over_jnd", "bound [JND]"},
-              wide ? TableCell("not known") : TableCell(one.bound.median_over_jnd));
+              wide ? TableCell("not known") : TableCell(errors.bound.median_over_jnd));
   }
   return table;
 }

@@ -161,8 +161,6 @@ class Measurement {
     result.errors = found.as_recorded.unit_errors();
     result.moved = found.surface_moved.summary();
     if (tares_) result.untared = untared_.models[result.place].as_recorded.summary();
-    result.bound = found.as_recorded.bounds();
-    result.bound_moved = found.surface_moved.bounds();
     result.name = plan_name(*result.plan);
     if (!result.plan->selects_centres() || result.size == 0) return;
     // A fit has at most as many centres as sites; the name has the actual number.
@@ -253,8 +251,8 @@ class Measurement {
            {&ErrorSummary::within_jnd, &ErrorSummary::p99_error_over_jnd, &ErrorSummary::rms_error_N})
         take_median([&](ModelResult& one) -> double& { return one.moved.*figure; });
       take_median([](ModelResult& one) -> double& { return one.untared.within_jnd; });
-      for (const auto bound : {&ModelResult::bound, &ModelResult::bound_moved})
-        take_median([&](ModelResult& one) -> double& { return (one.*bound).coverage; });
+      take_median([](ModelResult& one) -> double& { return one.errors.bound.coverage; });
+      take_median([](ModelResult& one) -> double& { return one.moved.bound.coverage; });
       for (std::size_t i = 0; i < median.errors.unit_within.size(); ++i)
         take_median([&](ModelResult& one) -> double& { return one.errors.unit_within[i]; });
       for (const auto draws : {&UnitErrors::drawn_units, &UnitErrors::drawn_strokes})

@@ -123,19 +123,18 @@ using ErrorBySize = std::vector<std::pair<int, double>>;  // number of centres, 
 // draws random numbers each figure is the median over the seeds.
 struct ModelResult {
   std::string name = "no force";
-  std::optional<ModelPlan> plan;  // none: 0 N
-  bool selects_size = false;      // its number of centres is selected in each fold
-  int size = 0;                   // centres, or nodes of the grid; the largest of all folds
-  int least_size = 0;             // the smallest of all folds
-  Eigen::Index rank = 0;          // of its equations, of centres and tail, in the last fold; 0: without equations
-  UnitErrors errors;              // positions as recorded
-  ErrorSummary moved;             // with the surface offset of every test recording subtracted
-  ErrorSummary untared;           // with the forces as recorded; empty where no force zero is subtracted
-  BoundFigures bound, bound_moved;
-  std::uint64_t seeds = 1;                   // number of fits with different seeds
-  Interval within_range, p99_range;          // least and greatest of them
-  double fit_seconds = 0.0;                  // mean over the folds, without the preparation
-  ModelTiming time;                          // of the last fold's model, on all test recordings
+  std::optional<ModelPlan> plan;     // none: 0 N
+  bool selects_size = false;         // its number of centres is selected in each fold
+  int size = 0;                      // centres, or nodes of the grid; the largest of all folds
+  int least_size = 0;                // the smallest of all folds
+  Eigen::Index rank = 0;             // of its equations, of centres and tail, in the last fold; 0: without equations
+  UnitErrors errors;                 // positions as recorded
+  ErrorSummary moved;                // with the surface offset of every test recording subtracted
+  ErrorSummary untared;              // with the forces as recorded; empty where no force zero is subtracted
+  std::uint64_t seeds = 1;           // number of fits with different seeds
+  Interval within_range, p99_range;  // least and greatest of them
+  double fit_seconds = 0.0;          // mean over the folds, without the preparation
+  ModelTiming time;                  // of the last fold's model, on all test recordings
   std::shared_ptr<const FittedModel> model;  // of the last fold; null: no force
   std::vector<ModelPointer> fits;            // of each fold; empty: no force
   std::size_t place = 0;                     // in the evaluation

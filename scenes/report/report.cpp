@@ -198,12 +198,12 @@ OrderedJson report_json(const ReportData& data, const ReportRequest& request, co
 
 // How far the 95 % bound of the recommended model holds.
 std::string bound_note(const ModelResult& use) {
-  if (!use.bound.has_bounds()) return use.name + " gives no error bound.";
-  return "The 95 % bound of " + use.name + " holds for " + percent(use.bound.coverage) +
-         " of the samples as recorded, " + percent(use.bound_moved.coverage) +
+  if (!use.errors.bound.has_bounds()) return use.name + " gives no error bound.";
+  return "The 95 % bound of " + use.name + " holds for " + percent(use.errors.bound.coverage) +
+         " of the samples as recorded, " + percent(use.moved.bound.coverage) +
          " with the surface moved; its median is " +
-         (std::isfinite(use.bound.median_over_jnd) ? three_digits(use.bound.median_over_jnd) + " JND"
-                                                   : "not known: it exceeds the largest force") +
+         (std::isfinite(use.errors.bound.median_over_jnd) ? three_digits(use.errors.bound.median_over_jnd) + " JND"
+                                                          : "not known: it exceeds the largest force") +
          ".";
 }
 

@@ -112,20 +112,21 @@ TEST(Evaluate, TheSamePreloadElsewhereIsAColumnOfItsOwn) {
 TEST(ModelErrors, CountErrorsWithinTheBoundAndKnowWhenItSaysNothing) {
   const JndLine jnd{0.1, 0.0};
   ModelErrors errors(jnd);
-  EXPECT_FALSE(errors.bounds().has_bounds());
+  EXPECT_FALSE(errors.summary().bound.has_bounds());
   errors.add(1.0, 1.0, false);
-  EXPECT_FALSE(errors.bounds().has_bounds()) << "a model without bounds";
+  EXPECT_FALSE(errors.summary().bound.has_bounds()) << "a model without bounds";
   for (const double error_N : {0.0, 0.1, 0.2, 0.3}) errors.add(1.0 + error_N, 1.0, false, 0.25);
-  EXPECT_EQ(errors.bounds().coverage, 0.75);
-  EXPECT_NEAR(errors.bounds().median_N, 0.25, 1e-7);
-  EXPECT_NEAR(errors.bounds().median_over_jnd, 2.5, 1e-6);
+  EXPECT_EQ(errors.summary().bound.coverage, 0.75);
+  EXPECT_NEAR(errors.summary().bound.median_N, 0.25, 1e-7);
+  EXPECT_NEAR(errors.summary().bound.median_over_jnd, 2.5, 1e-6);
   for (int i = 0; i < 7; ++i) errors.add(1.0, -1.5, false, 2.0);
-  EXPECT_EQ(errors.bounds().coverage, 3.0 / 11.0);
-  EXPECT_EQ(errors.bounds().median_N, 2.0);
-  EXPECT_TRUE(std::isnan(errors.bounds().median_over_jnd)) << "wider than the largest force, 1.5 N";
+  EXPECT_EQ(errors.summary().bound.coverage, 3.0 / 11.0);
+  EXPECT_EQ(errors.summary().bound.median_N, 2.0);
+  EXPECT_TRUE(std::isnan(errors.summary().bound.median_over_jnd)) << "wider than the largest force, 1.5 N";
   ModelErrors pulling(jnd);
   pulling.add(0.0, -1.5, false, 1.25);
-  EXPECT_NEAR(pulling.bounds().median_over_jnd, 12.5, 1e-6) << "the largest force is that of a material that pulls";
+  EXPECT_NEAR(pulling.summary().bound.median_over_jnd, 12.5, 1e-6)
+      << "the largest force is that of a material that pulls";
 }
 
 TEST(ModelTiming, MeasuresTheTickAndTheEvaluationInIt) {

@@ -64,7 +64,7 @@ TEST(Measure, HasTheMainModelsWithFiveSeedsAndNamesWithTheNumberOfCentres) {
       if (one.plan->base == Base::trend) {
         EXPECT_LT(one.moved.rms_error_N, one.errors.rms_error_N) << one.name;
       }
-      EXPECT_EQ(one.bound.has_bounds(), one.plan->base == Base::trend) << one.name;
+      EXPECT_EQ(one.errors.bound.has_bounds(), one.plan->base == Base::trend) << one.name;
       if (one.size == 0 || !one.plan->selects_centres()) continue;
       EXPECT_EQ(one.name, family_name(*one.plan) + "-" + std::to_string(one.size));
     }
