@@ -139,12 +139,6 @@ const std::string kHeader = "Time (s),Position (mm),Force (N)";
 const std::string kPlain = table_of(kHeader, "%t,%x,%f");
 std::string rows_of(int from, int to) { return table_of("", "%t,%x,%f", from, to); }
 
-std::string all_replaced(std::string text, const std::string& from, const std::string& to) {
-  for (std::size_t at = 0; (at = text.find(from, at)) != std::string::npos; at += to.size())
-    text.replace(at, from.size(), to);
-  return text;
-}
-
 // Each table has one reading, and its numbers are those of the press.
 TEST(ImportTable, OneReadingIsImported) {
   struct Case {
@@ -163,15 +157,15 @@ TEST(ImportTable, OneReadingIsImported) {
       {"datetime of MATLAB", table_of("Time,x_mm,F_N", "05-Mar-2024 %c,%x,%f"), ""},
       {"units in the cells", table_of("Time,Position,Force", "%t s,%x mm,%g mN"), ""},
       {"a column of units", table_of("Force,Unit,Travel,Unit,Time (s)", "%g,mN,%x,mm,%t"), ""},
-      {"a minus sign of a typesetter", all_replaced(kPlain, "-", "\xE2\x88\x92"), ""},
+      {"a minus sign of a typesetter", replaced(kPlain, "-", "\xE2\x88\x92"), ""},
       {"exponents of Fortran", table_of(kHeader, "%tD+00,%xD+00,%fD+00"), ""},
-      {"lines that end with CR", all_replaced(kPlain, "\n", "\r") + "\n", ""},
+      {"lines that end with CR", replaced(kPlain, "\n", "\r") + "\n", ""},
       {"the numbers of columns that are also cells", table_of("", "2,%t,%x,%f"),
        "--columns time=2,position=3,force=4 --units s,mm,N"},
       {"a constant column", table_of("Time (s),Distance (mm),Height (mm),F (N)", "%t,%x,12.0,%f"), ""},
-      {"bars between the fields", all_replaced(kPlain, ",", " | "), ""},
+      {"bars between the fields", replaced(kPlain, ",", " | "), ""},
       {"decimal commas between quotes",
-       all_replaced(table_of("\"t (s)\",\"x (mm)\",\"F (N)\"", "\"%t\",\"%x\",\"%f\""), ".", ","), ""},
+       replaced(table_of("\"t (s)\",\"x (mm)\",\"F (N)\"", "\"%t\",\"%x\",\"%f\""), ".", ","), ""},
       {"two clocks with the same times", table_of("Time_P (s),x (mm),Time_F (s),F (N)", "%t,%x,%t,%f"), ""},
       {"a torque", table_of("t (s),z (mm),torque_nm,Mz (Nm),Fz (N)", "%t,%x,%f1,%f2,%f"), ""},
       {"a robot", table_of("t_s,z_mm,F_N", "%t,%x,%f"), ""},
@@ -183,7 +177,7 @@ TEST(ImportTable, OneReadingIsImported) {
        ""},
       {"a date between tabs", table_of("Time\tx (mm)\tF (N)", "2024-03-05 %c\t%x\t%f"), ""},
       {"a remark that is left out",
-       table_of(kHeader, "%t,%x,%f", 0, 8) + "event: hold\n" + all_replaced(kPlain, kHeader + "\n" + rows_of(0, 8), ""),
+       table_of(kHeader, "%t,%x,%f", 0, 8) + "event: hold\n" + replaced(kPlain, kHeader + "\n" + rows_of(0, 8), ""),
        "--skip-bad-rows 1"},
   };
   for (const Case& one : cases) {
@@ -244,7 +238,7 @@ TEST(ImportTable, OtherwiseTheReadingsThatRemainAreCommands) {
       {table_of("specimen,t_s,x_mm,F_N", "%b,%t,%x,%f"), "",
        "rig.txt: found rows of 2 series that alternate, by column 1 \"specimen\" (1, 2), expected one; write the rows "
        "of each into a file of its own"},
-      {all_replaced(table_of("specimen,x_mm,F_N", "A,%x,%f", 0, 30) + table_of("", "B,%x,%f", 30, 60), "\n\n", "\n"),
+      {replaced(table_of("specimen,x_mm,F_N", "A,%x,%f", 0, 30) + table_of("", "B,%x,%f", 30, 60), "\n\n", "\n"),
        "--rate 100",
        "rig.txt: found rows of 2 series, by column 1 \"specimen\", expected one; choose the rows" + command +
            "--rate 100 --rows 2-31  # A" + command + "--rate 100 --rows 32-61  # B" + command +
@@ -261,8 +255,7 @@ TEST(ImportTable, OtherwiseTheReadingsThatRemainAreCommands) {
        "rig.txt: found no column that is clearly the force, expected one column for each of time, position and force; "
        "the columns are 1 \"t_s\", 2 \"x_mm\", 3 \"a (g)\"" +
            command + "--columns force=3  # \"a (g)\""},
-      {all_replaced(all_replaced(table_of("Time (s),x_mm,F_N", "14035%t,%x,%f"), "140350.", "140359."), "140351.",
-                    "140400."),
+      {replaced(replaced(table_of("Time (s),x_mm,F_N", "14035%t,%x,%f"), "140350.", "140359."), "140351.", "140400."),
        "",
        "rig.txt:102: found a time 40.01 s after that of the row above \"Time (s)\" at a multiple of 100 s, as where "
        "hours, minutes and seconds are written as one number; write seconds, or 14:03:22.010"},
@@ -313,7 +306,7 @@ TEST(ImportTable, OtherwiseTheReadingsThatRemainAreCommands) {
        "add "
        "it with --units, or --rate HZ if the rows are evenly spaced" +
            command + "--units ms  # 1000 Hz"},
-      {all_replaced(kPlain, "0.51,", "0.50,"), "",
+      {replaced(kPlain, "0.51,", "0.50,"), "",
        "rig.txt: found the time of the row above \"Time (s)\" in 1 row with other values, expected a later time in "
        "every "
        "row; write the times with more digits" +
@@ -393,9 +386,9 @@ TEST(ImportTable, DayAndMonthAreDecidedOnceForTheColumn) {
     const std::string both = form, before = both.substr(0, both.find(';')), after = both.substr(before.size() + 1);
     std::string text = "Timestamp,x (mm),F (N)\n";
     for (int i = 0; i < 120; ++i)
-      text += all_replaced(i < 60 ? before : after, "%", fixed(i < 60 ? 54.0 + 0.1 * i : 0.1 * (i - 60), 3)) + "," +
+      text += replaced(i < 60 ? before : after, "%", fixed(i < 60 ? 54.0 + 0.1 * i : 0.1 * (i - 60), 3)) + "," +
               std::to_string(i) + ",2" + std::to_string(i) + "\n";
-    const Result table = test::must(import_bytes(all_replaced(text, ":0.", ":00.")));
+    const Result table = test::must(import_bytes(replaced(text, ":0.", ":00.")));
     EXPECT_NEAR(table->recording.rows.back().time_s, 11.9, 1e-6) << form;
   }
 }
