@@ -48,7 +48,6 @@ SHOWN = "layered"  # material of that figure; on others, such as silicone, all m
 MODELS = ["voxel", "random", "kdtree", "greedy", "trend", "trend+greedy"]
 OURS = "trend+greedy"
 SEEDED = ("random", "kdtree", "greedy")  # methods on the measured force with a seed: random draws, or digits of the sites
-WIDE = 5.0  # points between the shares of two seeds that are named
 RECORDED, VIRTUAL = "Recorded sets", "Virtual materials"
 LEAK_ROWS = 20  # equal forces in a row, with some different values, that two recordings do not have by chance
 # Additional sets that do not follow from the file names of a folder.
@@ -364,13 +363,14 @@ def hard(kinds, results, models):
         yield f"| {what} | " + " | ".join(value(known[model]) if known[model] else "" for model in models) + " |"
 
 
-def by_seed(kinds, results, models, seeds):
+def by_seed(kinds, results, models, seeds, points=5.0):
     """Which shares depend on the seed; the intervals leave this out."""
-    named = [f"{model} on {one.name} ({low:.1f} to {high:.1f})" for model in models for sets in kinds.values() for one in sets
-             for low, high in [test.get("range", (0.0, 0.0)) for test in results[one.name, model].get("tests", [])]
-             if high - low >= WIDE]
-    if named:
-        yield f"Shares with {WIDE:.0f} points or more between {seeds} seeds, whose median is shown: {', '.join(named)}."
+    named = []
+    for model in models:
+        wide = [(high - low, f"{low:.1f} to {high:.1f} on {one.name}") for sets in kinds.values() for one in sets for low, high in
+                [test.get("range", (0.0, 0.0)) for test in results[one.name, model].get("tests", [])] if high - low >= points]
+        named += [f"{model} {len(wide)} times ({max(wide)[1]})"] if wide else []
+    return [f"Tests with {points:.0f} points or more between {seeds} seeds, whose median is shown: {', '.join(named)}."] if named else []
 
 
 def beyond_data(kinds, results, models):
