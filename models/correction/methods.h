@@ -75,6 +75,8 @@ std::vector<Eigen::Index> distinct_sites(const Sites& sites);
 // Draws up to `most` of the indices without replacement and moves them to the front (Fisher & Yates). Returns the
 // number of drawn ones.
 std::size_t draw_first(std::vector<Eigen::Index>& indices, Eigen::Index most, SplitMix64& random);
+// A quarter of the indices below `count`, at least one and at most `most`, always the same: centres for a choice.
+std::vector<Eigen::Index> random_quarter(Eigen::Index count, Eigen::Index most);
 
 // The step of the paper's reduction, which separates no forces below it.
 inline constexpr double kReductionForce_N = 0.05;

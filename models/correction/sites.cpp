@@ -113,6 +113,14 @@ std::size_t draw_first(std::vector<Eigen::Index>& indices, Eigen::Index most, Sp
   return count;
 }
 
+std::vector<Eigen::Index> random_quarter(Eigen::Index count, Eigen::Index most) {
+  std::vector<Eigen::Index> indices(static_cast<std::size_t>(count));
+  std::iota(indices.begin(), indices.end(), Eigen::Index{0});
+  SplitMix64 random(1);
+  indices.resize(draw_first(indices, std::clamp<Eigen::Index>(count / 4, 1, most), random));
+  return indices;
+}
+
 Normalisation normalisation_of(const Eigen::MatrixXd& features) {
   const Eigen::VectorXd mean = features.rowwise().mean();
   Normalisation result{mean, Eigen::VectorXd::Ones(mean.size()), features.rowwise().minCoeff(),

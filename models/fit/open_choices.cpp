@@ -4,11 +4,9 @@
 #include <array>
 #include <cmath>
 #include <iterator>
-#include <numeric>
 #include <vector>
 
 #include "engine/base/parallel.h"
-#include "engine/base/random_stream.h"
 #include "engine/base/text.h"
 #include "models/correction/algebra.h"
 #include "models/linear/lapack.h"
@@ -70,12 +68,8 @@ class Selection {
     tested_ = {features(Eigen::all, tested), Eigen::VectorXd(static_cast<Eigen::Index>(tested.size())), {}};
     std::ranges::transform(tested, tested_.force_N.begin(), [&](auto i) { return samples.rows[row_of(i)].force_N; });
     std::ranges::transform(tested, std::back_inserter(tested_.fold), row_fold);
-    const Eigen::Index most = truncates_ ? centres : kMostCentres;
-    order_.resize(train_.fold.size());
-    std::iota(order_.begin(), order_.end(), Eigen::Index{0});
-    SplitMix64 random(1);
-    const auto limit = std::max<Eigen::Index>(1, static_cast<Eigen::Index>(order_.size()) / 4);
-    order_.resize(draw_first(order_, std::min({most, limit, kMostRandom}), random));
+    order_ = random_quarter(train_.features.cols(),
+                            truncates_ ? std::min<Eigen::Index>(centres, kMostRandom) : kMostCentres);
     const std::vector<double> depth_m(tested_.features.row(0).begin(), tested_.features.row(0).end());
     deepest_m_ = deepest_elsewhere_m(tested_.fold, depth_m, folds_);
   }

@@ -5,10 +5,8 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <numeric>
 
 #include "engine/base/parallel.h"
-#include "engine/base/random_stream.h"
 #include "engine/base/statistics.h"
 #include "engine/tick/motion_estimator.h"
 #include "models/correction/algebra.h"
@@ -26,14 +24,6 @@ constexpr int kHighestDecade = 1;
 constexpr std::array kRadiusFactors{1.0, 2.0, 4.0, 8.0};
 constexpr std::size_t kLeastOfPhase = 5;  // rows; fewer do not show the error of a phase
 
-Eigen::MatrixXd random_centres(const Eigen::MatrixXd& points) {
-  std::vector<Eigen::Index> order(static_cast<std::size_t>(points.cols()));
-  std::iota(order.begin(), order.end(), Eigen::Index{0});
-  SplitMix64 random(1);
-  order.resize(draw_first(order, std::clamp<Eigen::Index>(points.cols() / 4, 1, kCentres), random));
-  return points(Eigen::all, order);
-}
-
 struct ScoredCorrection : CorrectionChoice {
   FoldErrors errors;
 };
@@ -43,7 +33,7 @@ class LeftOutFits {
  public:
   explicit LeftOutFits(const ResidualRows& rows)
       : rows_(rows),
-        centres_(random_centres(rows.points)),
+        centres_(rows.points(Eigen::all, random_quarter(rows.points.cols(), kCentres))),
         kernel_(rows.kernel, centres_, Eigen::VectorXd::Ones(centres_.cols())),
         penalty_(kernel_.matrix(kernel_.mean_eigenvalue(), kernel_.smallest_smoothing())),
         design_(rows.points.cols(),

@@ -112,25 +112,18 @@ TEST(FitRandom, CentresAreDistinctSitesThatDependOnTheSeed) {
   EXPECT_NE(centres, test::fit_random(sites, {.centres = 30, .seed = 6})->centres);
 }
 
-using test::random_points;
-
-Result<RbfFunction> function_of(const Sites& sites) {
-  auto solved = solve_direct(sites);
-  if (!solved) return solved.error();
-  return solved->function();
-}
-
 TEST(FitDirect, SolvesTheEquationsOfTheSplineAlwaysToTheSameBits) {
   for (const int count : {700, 4200}) {  // by a factor, and by conjugate gradients
     Sites sites = smooth_sites(4, count, 0.01, 1);
     sites.smoothing = 30.0;
-    const auto a = function_of(sites), b = function_of(sites);
-    ASSERT_TRUE(a.ok() && b.ok());
-    EXPECT_TRUE(a->weights == b->weights && a->tail == b->tail);
+    const auto solved = solve_direct(sites), again = solve_direct(sites);
+    ASSERT_TRUE(solved.ok() && again.ok());
+    const RbfFunction& spline = solved->function();
+    EXPECT_TRUE(spline.weights == again->function().weights && spline.tail == again->function().tail);
     Eigen::VectorXd force_N;
-    RbfCorrection(*a).evaluate_many(sites.points, force_N);
+    RbfCorrection(spline).evaluate_many(sites.points, force_N);
     const Eigen::VectorXd error = sites.row_scale.cwiseAbs2().cwiseProduct(sites.target_N - force_N);
-    EXPECT_LT((error - sites.smoothing * a->weights).lpNorm<Eigen::Infinity>(), 1e-8);
+    EXPECT_LT((error - sites.smoothing * spline.weights).lpNorm<Eigen::Infinity>(), 1e-8);
   }
 }
 
