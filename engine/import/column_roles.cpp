@@ -150,6 +150,7 @@ std::vector<std::size_t> strongest_columns(const std::vector<Claims>& claims, st
 std::string factor_in(std::string_view header) {
   static const std::regex factor(R"(\*|×|10 ?\^|/ ?10+(?![0-9A-Za-z])|(^|[^A-Za-z0-9])(x ?10+|10+ ?x)(?![A-Za-z0-9]))");
   std::cmatch found;
+  header = header.substr(0, 256);  // it is matched by recursion
   if (!std::regex_search(header.data(), header.data() + header.size(), found, factor)) return "";
   return found[2].matched ? found.str(2) : found.str();
 }
