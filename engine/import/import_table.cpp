@@ -670,6 +670,11 @@ class Importer {
     std::vector<Reading> parts = parts_of([&](std::size_t last, std::size_t i) { return own_s_[i] < own_s_[last]; },
                                           [&](std::size_t i) { return std::isfinite(own_s_[i]); },
                                           [](std::size_t) { return std::string("times that do not go back"); });
+    std::string wrap;
+    for (const int bits : {16, 32})
+      if (std::abs(most_s / to_si_[0] - std::exp2(bits)) < kSwappedSteps * times_.median_step)
+        wrap = ", as where a counter of " + std::to_string(bits) + " bits begins again (add 2^" + std::to_string(bits) +
+               " from there on)";
     const bool many = parts.size() > kMostReadings;
     if (many) parts.clear();
     for (const std::size_t other : other_times_)
@@ -680,7 +685,7 @@ class Importer {
       parts.insert(parts.begin(), {"--rate " + short_number(rate_Hz), "if the rows are evenly spaced"});
     return fail_at(first_back,
                    "found a time " + short_number(most_s) + " s before that of the row above" +
-                       quoted_name(number_[0]) + ", expected later times in every row; " +
+                       quoted_name(number_[0]) + wrap + ", expected later times in every row; " +
                        (many ? "sort the rows, or split the file" : "choose the rows"),
                    parts);
   }

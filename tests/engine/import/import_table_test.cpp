@@ -326,6 +326,8 @@ TEST(ImportTable, OtherwiseTheReadingsThatRemainAreCommands) {
     EXPECT_TRUE(
         test::has_parts(message(table_of(std::string("t_s,x_mm,") + name, "%t,%x,%f")), {"the unit", "convert"}))
         << name;
+  const std::string wraps = message(table_of("t_ms,x_mm,F_N", "%i0,%x,%f", 6450, 6554) + "4,1,1\n14,1,1\n");
+  EXPECT_TRUE(test::has_parts(wraps, {"a counter of 16 bits begins again"})) << wraps;
   EXPECT_NE(message(""), "accepted");
   EXPECT_NE(message("PK\x03\x04rest"), "accepted");
 }
