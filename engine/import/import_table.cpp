@@ -197,10 +197,11 @@ class Importer {
                                       lines_words({block.begin + 1, block.end}) + ": " + count_of(block.rows, "row") +
                                           " of " + count_of(block.fields, "field")));
     }
-    if (request_.block > readings.size())
+    const std::size_t chosen = request_.rows ? 0 : request_.block;
+    if (chosen > readings.size())
       return fail("found " + count_of(readings.size(), "block") + " of rows, expected at least " +
-                  std::to_string(request_.block));
-    if (request_.block == 0 && readings.size() > 1) {
+                  std::to_string(chosen));
+    if (chosen == 0 && readings.size() > 1) {
       if (layout_.skippable)
         readings.insert(readings.begin(), {"--skip-bad-rows " + std::to_string(request_.skip_bad_rows + between),
                                            "all rows, without the text between them"});
@@ -208,7 +209,7 @@ class Importer {
                       ", expected one table that explains every row; choose the rows",
                   readings);
     }
-    block_ = layout_.blocks[std::max<std::size_t>(request_.block, 1) - 1];
+    block_ = layout_.blocks[std::max<std::size_t>(chosen, 1) - 1];
     for (const RowBlock& other : layout_.blocks) {
       if (other.begin == block_.begin) continue;
       leave_out("in another block", other.begin + 1, other.rows);

@@ -49,7 +49,7 @@ struct ImportRequest {
   bool flip_position = false, flip_force = false;
   std::optional<double> gain_N_per_V{};  // for a force recorded in volts
   std::uint64_t skip_bad_rows = 0;       // number of rows that may be unreadable
-  std::optional<LineRange> rows{};       // only these lines
+  std::optional<LineRange> rows{};       // only these lines, whatever the block
   std::size_t block = 0;                 // from 1: only this block of rows; 0: all rows must be one
 };
 
