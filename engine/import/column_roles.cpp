@@ -190,6 +190,10 @@ bool is_role_word(const std::string& word) {
 
 NameAndUnit header_parts(std::string_view header) {
   header = trimmed(header);
+  std::string spelled;  // R writes "Time (s)" as "Time..s."
+  if (const std::size_t at = header.rfind(".."); at != std::string_view::npos && header.ends_with('.') && at > 0)
+    header = spelled = replaced(header.substr(0, at), ".", " ") + " (" +
+                       std::string(header.substr(at + 2, header.size() - std::min(header.size(), at + 3))) + ")";
   const std::string factor = factor_in(header);
   using Parts = std::pair<std::string_view, std::string_view>;  // name, unit
   const auto split_at = [&](std::size_t at, std::size_t length) {

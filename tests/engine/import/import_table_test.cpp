@@ -175,6 +175,7 @@ TEST(ImportTable, OneReadingIsImported) {
        "LabVIEW Measurement\nX_Columns\tNo\nDelta_X\t0.01\t0.01\nX0\t0\t0\nX_Value\tF (N)\tx (mm)\n" +
            table_of("", "\t%f\t%x"),
        ""},
+      {"names of R", table_of("Time..s.,Position..mm.,Normal.Force..N.", "%t,%x,%f"), ""},
       {"a date between tabs", table_of("Time\tx (mm)\tF (N)", "2024-03-05 %c\t%x\t%f"), ""},
       {"a remark that is left out",
        table_of(kHeader, "%t,%x,%f", 0, 8) + "event: hold\n" + replaced(kPlain, kHeader + "\n" + rows_of(0, 8), ""),
