@@ -218,7 +218,7 @@ TEST_F(ExhibitTest, TheRevealIsTheVisitorsOwnPressInSlowMotion) {
 // After a stroke with the best model, the same stroke is shown with the worst one, and then the next stroke.
 TEST_F(ExhibitTest, TheInvitationShowsTheSameStrokeWithAWorseModel) {
   open_exhibit({});
-  EXPECT_TRUE(says("the best computer"));
+  ASSERT_TRUE(until([&] { return says("the best computer"); }));
   ASSERT_TRUE(until([&] { return app_->exhibit().shows_worst(); }));
   frames(1);
   EXPECT_TRUE(says("a worse computer"));
