@@ -145,12 +145,12 @@ std::vector<std::size_t> strongest_columns(const std::vector<Claims>& claims, st
   return best;
 }
 
-// A factor beside the name or the unit of a column: "Force x100 (N)", "10*Force", "Force/10", "Force 10^-2 N", "F N
-// x10".
+// A factor beside the name or the unit of a column: "Force x100 (N)", "10*Force", "Force/10", "Force 10^-2 N".
 std::string factor_in(std::string_view header) {
-  static const std::regex factor(R"(\*|×|10 ?\^|/ ?10+(?![0-9A-Za-z])|(^|[^A-Za-z0-9])(x ?10+|10+ ?x)(?![A-Za-z0-9]))");
+  static const std::regex factor(R"(\*|×|10 ?\^|/ ?10+(?![0-9A-Za-z])|)"
+                                 R"((^|[^A-Za-z0-9])(x ?10+|10+ ?x)(?![A-Za-z0-9]))");
   std::cmatch found;
-  header = header.substr(0, 256);  // it is matched by recursion
+  header = header.substr(0, 256);  // std::regex recurses over the text
   if (!std::regex_search(header.data(), header.data() + header.size(), found, factor)) return "";
   return found[2].matched ? found.str(2) : found.str();
 }

@@ -675,7 +675,7 @@ class Importer {
     for (const int bits : {16, 32})
       if (std::abs(most_s / to_si_[0] - std::exp2(bits)) < kSwappedSteps * times_.median_step)
         wrap = ", as where a counter of " + std::to_string(bits) + " bits begins again (add 2^" + std::to_string(bits) +
-               " from there on)";
+               " to its values from there on)";
     const bool many = parts.size() > kMostReadings;
     if (many) parts.clear();
     for (const std::size_t other : other_times_)
@@ -842,17 +842,24 @@ class Importer {
   // Refuses a clock that is so coarse that rows with other values have the time of the row above.
   Status refuse_coarse_clock() {
     std::size_t shared = 0, first = 0, last = 0, doubled = 0;  // first, last: slots at which the time changes
-    for (std::size_t i = 1; i < slots_.size(); ++i) {
-      const double step_s = own_s_[i] - own_s_[i - 1];
+    std::uint64_t bad = texts_;
+    for (std::size_t i = 0, above = slots_.size(); i < slots_.size(); ++i) {
+      if (!slots_[i].good) {
+        ++bad;
+        continue;
+      }
+      const std::size_t before = std::exchange(above, i);
+      if (before == slots_.size()) continue;
+      const double step_s = own_s_[i] - own_s_[before];
       if (step_s > 0.0) last = i, first = first > 0 ? first : i;
       if (std::abs(step_s / (to_si_[0] * times_.plain_step) - 2.0) < kEqualSteps) ++doubled;
-      if (step_s == 0.0 && (values_[1][i] != values_[1][i - 1] || values_[2][i] != values_[2][i - 1])) ++shared;
+      if (step_s == 0.0 && (values_[1][i] != values_[1][before] || values_[2][i] != values_[2][before])) ++shared;
     }
     if (static_cast<double>(doubled) > kDoubledSteps * static_cast<double>(slots_.size()))
       note("warning: " + count_of(doubled, "step") +
-           " of the time are twice the others: rows are missing, or the clock " +
-           "is as coarse as the rows are apart; if they are evenly spaced, add --rate HZ");
-    if (shared <= request_.skip_bad_rows) return {};
+           " of the time are twice the others: rows are missing, or the clock is as coarse as the rows are apart; if " +
+           "they are evenly spaced, add --rate HZ");
+    if (shared == 0 || bad + shared <= request_.skip_bad_rows) return {};
     std::vector<Reading> readings;
     if (last > first) {
       // The rows between two changes of the time are known to one row.
@@ -862,8 +869,8 @@ class Importer {
       if (rate_in_range(1.0 / rate_Hz))
         readings.push_back({"--rate " + short_number(rate_Hz), "the mean rate, if the rows are evenly spaced"});
     }
-    if (kMostBad * shared <= slots_.size())
-      readings.push_back({"--skip-bad-rows " + std::to_string(shared), "without these rows"});
+    if (kMostBad * (bad + shared) <= slots_.size())
+      readings.push_back({"--skip-bad-rows " + std::to_string(bad + shared), "without these rows"});
     return fail("found the time of the row above" + quoted_name(number_[0]) + " in " + count_of(shared, "row") +
                     " with other values, expected a later time in every row; write the times with more digits",
                 readings);

@@ -268,7 +268,7 @@ class Checker {
 
   void check_lag() {
     const OffsetEstimate lag = find_force_lag(prepared_.rows, noise_N_);
-    // Without an onset of force, a short lag or a lead cannot be distinguished from the material's memory.
+    // Without an onset of force, a short lag or lead cannot be distinguished from the material's memory.
     if (lag.at == 0.0 || (!surface_.air.found && std::abs(lag.at) <= kNearLag_s)) return;
     lag_s_ = lag.at;
     if (!std::isfinite(lag.standard_error)) {
