@@ -196,8 +196,9 @@ void LiveTick::render(double step_s) noexcept {
   snapshot_.dead_man_released = dead_man_released();
   // After an impossible sample there is no force until a possible one.
   const bool bad_sample = (snapshot_.faults & loop_fault::kBadSample) != 0;
-  snapshot_.rendered_N = limiter_.limit(
-      snapshot_.passive_N, step_s, {device.sample_age_s, !device.may_push(), snapshot_.dead_man_released, bad_sample});
+  const double age_s = std::max(device.sample_age_s, models_->tick.motion_age_s());
+  snapshot_.rendered_N =
+      limiter_.limit(snapshot_.passive_N, step_s, {age_s, !device.may_push(), snapshot_.dead_man_released, bad_sample});
   snapshot_.faults |= limiter_faults(limiter_.flags());
   snapshot_.limiter_flags = limiter_.flags();
   snapshot_.heat_share = static_cast<float>(limiter_.heat_share());

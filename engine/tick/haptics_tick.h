@@ -118,6 +118,9 @@ class HapticsTick {
   const TickSnapshot& snapshot() const noexcept { return snapshot_; }
 
   MotionEstimate motion() const noexcept { return motion_.estimate(); }
+  // The age of the reading from which the forces are, if those since are beyond the reach of a hand; else 0. For the
+  // limiter: a force must not jump to another place of the tool, however fast the sensor says it went there.
+  double motion_age_s() const noexcept { return motion_.age_s(); }
 
   std::size_t model_count() const noexcept { return models_.size(); }
   const ForceModel& model(std::size_t index) const noexcept { return *models_[index]; }

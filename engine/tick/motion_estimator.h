@@ -45,6 +45,8 @@ class MotionEstimator {
   MotionEstimate update(const ToolSample& sample) noexcept;
   // The last estimate.
   MotionEstimate estimate() const noexcept { return {state_.estimate_m, state_.velocity_m_per_s}; }
+  // Its age if the readings since were beyond the reach of a hand; else 0.
+  double age_s() const noexcept { return state_.skipped_s; }
 
  private:
   SensorSpec sensor_;

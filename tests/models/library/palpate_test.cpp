@@ -322,6 +322,22 @@ TEST_F(LibraryC, ARepeatedSampleIsHeldAndNoneChangesTheForceByMoreThan2NInAMilli
   }
 }
 
+TEST_F(LibraryC, AToolThatIsSuddenlyElsewhereIsLetGoAndFeltAgainWithARamp) {
+  const ModelHandle model = load(save(test::example_models().front()));
+  const StreamPtr one = stream(model, {1e-5, 0.0, 0.0, 0.0});
+  const LimiterHandle limiter = default_limiter();
+  double last_N = 0.0;
+  for (int i = 0; i < 3000; ++i) {
+    const double jump_m = i < 1000 ? 0.0 : 0.03;
+    const double force_N = palpate_limiter_render(limiter.get(), one.get(), 1e-3 * i, 2e-3 + jump_m, 1e-3);
+    EXPECT_LT(std::abs(force_N - last_N), i > 1015 ? 0.1 : 2.1) << i;
+    const bool stale = (palpate_limiter_flags(limiter.get()) & PALPATE_LIMIT_STALE) != 0;
+    EXPECT_TRUE(i != 1090 || (stale && force_N == 0.0)) << force_N;
+    last_N = force_N;
+  }
+  EXPECT_GT(last_N, 1.0);
+}
+
 TEST_F(LibraryC, ALateOrSlowLoopOfItsOwnDoesNotDriveAHand) {
   const std::string recording = folder_.file("stiff.csv"), path = folder_.file("stiff.json");
   test::must_run({"synth", "--material", "stiff", "--seconds", "8", "--out", recording});
