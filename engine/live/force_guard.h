@@ -105,12 +105,12 @@ struct Impedance {
 // means, because the extremes of a link with jitter differ from second to second, and the force would with them.
 class LoopDelay {
  public:
-  // `time_s` does not decrease. O(1).
-  void add(const ForceAge& age, double time_s) noexcept {
+  // `weight`: how long it acted, in one unit for all. `time_s` does not decrease. O(1).
+  void add(const ForceAge& age, double weight, double time_s) noexcept {
     move_to(time_s);
     Ages& part = parts_[part_ % kParts];
-    part.sum_s += age.middle_s();
-    part.count += 1.0;
+    part.sum_s += weight * age.middle_s();
+    part.weights += weight;
   }
   void move_to(double time_s) noexcept {
     const auto part = static_cast<std::size_t>(std::max(0.0, time_s) * static_cast<double>(kParts - 1));
@@ -128,8 +128,8 @@ class LoopDelay {
 
  private:
   struct Ages {
-    double sum_s = 0.0, count = 0.0;
-    double mean_s() const noexcept { return count > 0.0 ? sum_s / count : 0.0; }
+    double sum_s = 0.0, weights = 0.0;
+    double mean_s() const noexcept { return weights > 0.0 ? sum_s / weights : 0.0; }
   };
   static constexpr std::size_t kParts = 17;
 
@@ -260,8 +260,11 @@ class ForceGuard {
     // A force with an unknown delay can make a hand oscillate.
     waits_ = waits_ && !known;
     if (!known || !(age.largest_s > 0.0 || since_s > 0.0)) return;
-    acted_ = age.largest_s > 0.0 ? age : ForceAge{tick_s, since_s + tick_s};
-    delay_.add(acted_, time_s_);
+    // A device that reports ages does so for samples that are as far apart as it says. Without them, of samples that
+    // are read at once the last one's force acts until the next.
+    const bool reported = age.largest_s > 0.0;
+    acted_ = reported ? age : ForceAge{tick_s, since_s + tick_s};
+    delay_.add(acted_, reported ? 1.0 : since_s, time_s_);
   }
 
   // The force of a model of this impedance, scaled as `wanted`; the scale moves there with a time constant of 50 ms.
