@@ -248,6 +248,7 @@ double render(palpate_limiter& limiter, palpate_stream& stream, double given_s) 
   limiter.flags = 0;
   if (limiter.guard.stiffness_share() < 0.95) limiter.flags |= PALPATE_LIMIT_REDUCED;
   if (limiter.steps.contradict()) limiter.flags |= PALPATE_LIMIT_WRONG_STEP;
+  if (scaled_N - passive_N > JndLine{}.at(scaled_N)) limiter.flags |= PALPATE_LIMIT_PASSIVE;
   const double age_s = std::max(limiter.sample_age_s, stream.tick().motion_age_s());
   return limiter.limiter.limit(passive_N, step_s, {age_s, stopped});
 }

@@ -167,8 +167,9 @@ enum { /* bits of palpate_limiter_flags: what the limiter did to the last force 
        PALPATE_LIMIT_THERMAL = 16,
        PALPATE_LIMIT_STALE = 32,
        PALPATE_LIMIT_STOPPED = 64,
-       PALPATE_LIMIT_REDUCED = 128,   /* palpate_limiter_stiffness_share is below 0.95 */
-       PALPATE_LIMIT_WRONG_STEP = 256 /* step_s and time_s differ by more than a quarter */
+       PALPATE_LIMIT_REDUCED = 128,    /* palpate_limiter_stiffness_share is below 0.95 */
+       PALPATE_LIMIT_WRONG_STEP = 256, /* step_s and time_s differ by more than a quarter */
+       PALPATE_LIMIT_PASSIVE = 512     /* the passivity controller takes more than a JND of the force */
 };
 
 /* 10 N, 2000 N/s, ramp 0.3 s, no thermal limit, stale after 10 ms, stop within 10 ms. */

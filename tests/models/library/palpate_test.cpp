@@ -405,6 +405,17 @@ TEST_F(LibraryC, NoForceIsReducedInSilence) {
     loop.call(std::pair{loop.time_s, NAN});
     EXPECT_NE(palpate_limiter_flags(limiter.get()) & PALPATE_LIMIT_STOPPED, 0U);
   }
+  // A press in 0.2 s and back in 40 ms, with the force 5 ms late.
+  const StreamPtr one = stream(model, {1e-5, 0.0, 0.0, 0.0});
+  const LimiterHandle limiter = default_limiter();
+  palpate_limiter_set_lag(limiter.get(), 5e-3);
+  unsigned flags = 0;
+  for (int i = 0; i < 240; ++i) {
+    const double depth_m = 4e-3 * std::min(i / 200.0, (240 - i) / 40.0);
+    palpate_limiter_render(limiter.get(), one.get(), 1e-3 * i, 1e-5 * std::round(1e5 * depth_m), 1e-3);
+    flags |= palpate_limiter_flags(limiter.get());
+  }
+  EXPECT_NE(flags & PALPATE_LIMIT_PASSIVE, 0U);
 }
 
 TEST_F(LibraryC, RenderingDoesNothingForbidden) {
