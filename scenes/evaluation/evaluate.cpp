@@ -9,14 +9,14 @@
 #include "engine/base/statistics.h"
 #include "engine/base/text.h"
 #include "engine/tick/features.h"
-#include "engine/tick/haptics_tick.h"
 #include "engine/tick/motion_estimator.h"
 
 namespace palpate {
-
 namespace {
 
 constexpr double kStill_m_per_s = 0.002;  // the slowest speed that is a movement
+// A loss of contact of at most this time does not end a stroke: noise at the surface causes it.
+constexpr double kStrokePause_s = 0.05;
 
 class Evaluator {
  public:
@@ -82,6 +82,7 @@ class Evaluator {
   // with this offset.
   Status replay_at(double offset_m, const std::vector<Places>& which, const FitControl& control,
                    ModelErrors ModelEvaluation::*only = nullptr) {
+    TimedSamples& timed = pooled_.timing.back();
     // Contact of each row, from the first of these groups, so that all models have the same samples.
     std::vector<bool> contact;
     for (std::size_t first = 0; first < which.size(); first += kMaxModels) {
@@ -90,13 +91,18 @@ class Evaluator {
       ForceModels group;
       for (std::size_t k = 0; k < count; ++k) group.push_back(models_[which[first + k].front()].model);
       const bool is_first = first == 0 && offset_m == 0.0;
-      StrokeCounter strokes;
       std::size_t row_number = 0;
+      double last_contact_s = -1e300;
+      bool in_air = true;  // since the last row in contact
       const auto visitor = [&](const RecordingRow& row, const TickSnapshot& snapshot, const HapticsTick& tick) {
-        if (is_first) visit(row, snapshot, tick);
+        if (is_first && request_.also) request_.also(row, snapshot, tick);
+        if (is_first && snapshot.in_contact && timed.samples.size() < kTimedSamples)
+          timed.samples.push_back(tool_sample(row));
         if (first == 0) contact.push_back(snapshot.in_contact);
         const bool in_contact = contact[row_number++];
-        const bool begins = strokes.begins_stroke(row.time_s, in_contact);
+        const bool begins = in_contact && in_air && row.time_s - last_contact_s > kStrokePause_s;
+        in_air = !in_contact;
+        if (in_contact) last_contact_s = row.time_s;
         if (!in_contact || row.time_s < request_.counted_from_s) return;
         const auto add = [&](ModelErrors& errors, double model_N, bool out_of_domain, double bound_N) {
           if (begins) errors.begin_stroke();
@@ -120,17 +126,10 @@ class Evaluator {
         for (const std::size_t i : which[first + k]) pooled_.models[i].began = summary.began[k];
       if (is_first) {
         pooled_.samples += summary.samples;
-        pooled_.timing.back().sensor = summary.sensor;
+        timed.sensor = summary.sensor;
       }
     }
     return {};
-  }
-
-  // Each row once, as recorded.
-  void visit(const RecordingRow& row, const TickSnapshot& snapshot, const HapticsTick& tick) {
-    if (request_.also) request_.also(row, snapshot, tick);
-    std::vector<ToolSample>& timed = pooled_.timing.back().samples;
-    if (snapshot.in_contact && timed.size() < kTimedSamples) timed.push_back(tool_sample(row));
   }
 
   const Recording& recording_;
@@ -139,6 +138,97 @@ class Evaluator {
   Evaluation& pooled_;
   std::vector<Places> different_;
 };
+
+using Clock = std::chrono::steady_clock;
+constexpr std::size_t kBlock = 64;
+
+// Appends the mean time of `step(index)` over every block of indices below `count`.
+template <typename Step>
+void add_blocks(std::size_t count, std::vector<double>& means_ns, const Step& step) {
+  const std::size_t block = std::min(count, kBlock);
+  for (std::size_t first = 0; first + block <= count; first += block) {
+    const auto start = Clock::now();
+    for (std::size_t i = first; i < first + block; ++i) step(i);
+    const std::chrono::duration<double, std::nano> elapsed = Clock::now() - start;
+    means_ns.push_back(elapsed.count() / static_cast<double>(block));
+  }
+}
+
+// The mean times of one model's blocks of calls, in one round over all samples.
+struct Round {
+  std::vector<double> tick_ns;
+  std::vector<double> evaluation_ns;
+};
+
+Round time_round(const ModelPointer& model, const std::vector<TimedSamples>& stretches) {
+  Round round;
+  double force_N = 0.0;
+  for (const TimedSamples& stretch : stretches) {
+    if (stretch.samples.empty()) continue;
+    // A long time before, in air: a stream that begins in contact costs more (engine/tick/haptics_tick.h).
+    ToolSample before = stretch.samples.front();
+    before.time_s -= 1000.0;
+    before.position_m = model->surface_m() - 1.0;
+    // The first pass computes the features, and warms up caches and the processor's clock.
+    std::vector<std::array<double, kMaxFeatures>> features;
+    HapticsTick first(stretch.sensor, {model});
+    first.step(before);
+    for (const ToolSample& one : stretch.samples) {
+      first.step(one);
+      features.push_back(first.features_of(0).values);
+    }
+    HapticsTick tick(stretch.sensor, {model});
+    tick.step(before);
+    add_blocks(features.size(), round.tick_ns,
+               [&](std::size_t i) { force_N = tick.step(stretch.samples[i]).force_N[0]; });
+    add_blocks(features.size(), round.evaluation_ns, [&](std::size_t i) {
+      std::array<double, kMaxFeatures> x = features[i];
+      x[0] += 0.0 * force_N;  // adds 0; each call depends on the last, as in the tick
+      force_N = model->force(x.data());
+    });
+  }
+  // The forces must be used, or the compiler may remove the calls.
+  volatile double wanted = force_N;
+  static_cast<void>(wanted);
+  return round;
+}
+
+std::vector<TimedSamples> own_strokes(const ForceModel& model) {
+  const ProbingStrokes strokes(model);
+  TimedSamples all;
+  for (std::size_t i = 0; i < ProbingStrokes::kSamples; ++i) all.samples.push_back(strokes.at(i));
+  return {all};
+}
+
+Timing timing_of(const std::vector<Round>& rounds, std::vector<double> Round::*times) {
+  std::vector<double> medians, p99s;
+  for (const Round& round : rounds) {
+    medians.push_back(quantile_of(round.*times, 50));
+    p99s.push_back(quantile_of(round.*times, 99));
+  }
+  return {quantile_of(medians, 50), quantile_of(medians, 0), quantile_of(medians, 100), quantile_of(p99s, 50)};
+}
+
+constexpr double kCoarseSearch_m = 0.1e-3;
+constexpr double kMostCoarseSteps = 200.0;
+constexpr double kSearchHuberLimit = 1.0;  // JND
+
+using ForceErrors = std::vector<double>;  // model minus measured, N, by row
+
+ForceErrors errors_of(const ForceModel& model, const std::vector<Sample>& rows, double offset_m) {
+  FeatureFilter filter(model.features());
+  ForceErrors errors(rows.size());
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    ToolSample sample = rows[i].tool;
+    MotionEstimate motion = rows[i].motion;
+    sample.position_m -= offset_m;
+    motion.position_m -= offset_m;
+    const FeatureVector& vector = filter.update(sample, motion);
+    const double force_N = vector.in_contact ? model.force(vector.values.data()) : 0.0;
+    errors[i] = force_N - rows[i].force_N;
+  }
+  return errors;
+}
 
 }  // namespace
 
@@ -212,80 +302,6 @@ std::string motion_words(const Motion& motion) {
          (motion.velocity_m_per_s > 0.0 ? "press, " : "release, ") + depth + (held ? ", after a hold of " + hold : "");
 }
 
-namespace {
-
-using Clock = std::chrono::steady_clock;
-constexpr std::size_t kBlock = 64;
-
-// Appends the mean time of `step(index)` over every block of indices below `count`.
-template <typename Step>
-void add_blocks(std::size_t count, std::vector<double>& means_ns, const Step& step) {
-  const std::size_t block = std::min(count, kBlock);
-  for (std::size_t first = 0; first + block <= count; first += block) {
-    const auto start = Clock::now();
-    for (std::size_t i = first; i < first + block; ++i) step(i);
-    const std::chrono::duration<double, std::nano> elapsed = Clock::now() - start;
-    means_ns.push_back(elapsed.count() / static_cast<double>(block));
-  }
-}
-
-// The mean times of one model's blocks of calls, in one round over all samples.
-struct Round {
-  std::vector<double> tick_ns;
-  std::vector<double> evaluation_ns;
-};
-
-Round time_round(const ModelPointer& model, const std::vector<TimedSamples>& stretches) {
-  Round round;
-  double force_N = 0.0;
-  for (const TimedSamples& stretch : stretches) {
-    if (stretch.samples.empty()) continue;
-    // A long time before, in air: a stream that begins in contact costs more (engine/tick/haptics_tick.h).
-    ToolSample before = stretch.samples.front();
-    before.time_s -= 1000.0;
-    before.position_m = model->surface_m() - 1.0;
-    // The first pass computes the features, and warms up caches and the processor's clock.
-    std::vector<std::array<double, kMaxFeatures>> features;
-    HapticsTick first(stretch.sensor, {model});
-    first.step(before);
-    for (const ToolSample& one : stretch.samples) {
-      first.step(one);
-      features.push_back(first.features_of(0).values);
-    }
-    HapticsTick tick(stretch.sensor, {model});
-    tick.step(before);
-    add_blocks(features.size(), round.tick_ns,
-               [&](std::size_t i) { force_N = tick.step(stretch.samples[i]).force_N[0]; });
-    add_blocks(features.size(), round.evaluation_ns, [&](std::size_t i) {
-      std::array<double, kMaxFeatures> x = features[i];
-      x[0] += 0.0 * force_N;  // adds 0; each call depends on the last, as in the tick
-      force_N = model->force(x.data());
-    });
-  }
-  // The forces must be used, or the compiler may remove the calls.
-  volatile double wanted = force_N;
-  static_cast<void>(wanted);
-  return round;
-}
-
-std::vector<TimedSamples> own_strokes(const ForceModel& model) {
-  const ProbingStrokes strokes(model);
-  TimedSamples all;
-  for (std::size_t i = 0; i < ProbingStrokes::kSamples; ++i) all.samples.push_back(strokes.at(i));
-  return {all};
-}
-
-Timing timing_of(const std::vector<Round>& rounds, std::vector<double> Round::*times) {
-  std::vector<double> medians, p99s;
-  for (const Round& round : rounds) {
-    medians.push_back(quantile_of(round.*times, 50));
-    p99s.push_back(quantile_of(round.*times, 99));
-  }
-  return {quantile_of(medians, 50), quantile_of(medians, 0), quantile_of(medians, 100), quantile_of(p99s, 50)};
-}
-
-}  // namespace
-
 std::vector<ModelTiming> time_models(const std::vector<ModelPointer>& models,
                                      const std::vector<TimedSamples>& stretches) {
   std::vector<ModelTiming> timings(models.size());
@@ -302,38 +318,6 @@ std::vector<ModelTiming> time_models(const std::vector<ModelPointer>& models,
   return timings;
 }
 
-namespace {
-
-constexpr double kCoarseSearch_m = 0.1e-3;
-constexpr double kMostCoarseSteps = 200.0;
-constexpr double kSearchHuberLimit = 1.0;  // JND
-
-using ForceErrors = std::vector<double>;  // model minus measured, N, by row
-
-ForceErrors errors_of(const ForceModel& model, const std::vector<Sample>& rows, double offset_m) {
-  FeatureFilter filter(model.features());
-  ForceErrors errors(rows.size());
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    ToolSample sample = rows[i].tool;
-    MotionEstimate motion = rows[i].motion;
-    sample.position_m -= offset_m;
-    motion.position_m -= offset_m;
-    const FeatureVector& vector = filter.update(sample, motion);
-    const double force_N = vector.in_contact ? model.force(vector.values.data()) : 0.0;
-    errors[i] = force_N - rows[i].force_N;
-  }
-  return errors;
-}
-
-// `force_offset_N`: the offset of the measured force.
-void add_costs(const ForceErrors& errors, double force_offset_N, const std::vector<Sample>& rows,
-               const std::vector<std::size_t>& blocks, const JndLine& jnd, BlockCosts& costs) {
-  for (std::size_t i = 0; i < rows.size(); ++i)
-    costs[blocks[i]] += huber((errors[i] + force_offset_N) / jnd.at(rows[i].force_N), kSearchHuberLimit);
-}
-
-}  // namespace
-
 OffsetEstimate locate_surface(const std::vector<Sample>& rows, const std::vector<ModelPointer>& models,
                               const JndLine& jnd) {
   if (rows.empty() || models.empty()) return {};
@@ -341,28 +325,29 @@ OffsetEstimate locate_surface(const std::vector<Sample>& rows, const std::vector
   // The range reaches from a recording that is all in air to one that begins at the greatest depth of this one.
   const double reach_m = std::max({high_m - low_m, std::abs(low_m), std::abs(high_m)});
   const std::vector<std::size_t> blocks = blocks_by_path(rows);
+  const auto errors_at = [&](double offset_m) {
+    std::vector<ForceErrors> errors;
+    for (const ModelPointer& model : models) errors.push_back(errors_of(*model, rows, offset_m));
+    return errors;
+  };
+  // `force_offset_N`: of the measured force.
+  const auto costs_of = [&](const std::vector<ForceErrors>& of_models, double force_offset_N) {
+    BlockCosts costs(kBlocks, 0.0);
+    for (const ForceErrors& errors : of_models)
+      for (std::size_t i = 0; i < rows.size(); ++i)
+        costs[blocks[i]] += huber((errors[i] + force_offset_N) / jnd.at(rows[i].force_N), kSearchHuberLimit);
+    return costs;
+  };
   const OffsetEstimate shift = estimate_offset(
-      [&](double offset_m) {
-        BlockCosts costs(kBlocks, 0.0);
-        for (const auto& model : models) add_costs(errors_of(*model, rows, offset_m), 0.0, rows, blocks, jnd, costs);
-        return costs;
-      },
+      [&](double offset_m) { return costs_of(errors_at(offset_m), 0.0); },
       {-reach_m, reach_m, std::max(kCoarseSearch_m, 2.0 * reach_m / kMostCoarseSteps), kFinest_m, kWidestSurface_m});
   if (!shift.identified || !shift.not_zero) return shift;
-  std::vector<ForceErrors> unmoved;
+  const std::vector<ForceErrors> unmoved = errors_at(0.0);
   double most_N = 0.0;
-  for (const auto& model : models) {
-    unmoved.push_back(errors_of(*model, rows, 0.0));
-    for (const double error_N : unmoved.back()) most_N = std::max(most_N, std::abs(error_N));
-  }
+  for (const ForceErrors& errors : unmoved)
+    for (const double error_N : errors) most_N = std::max(most_N, std::abs(error_N));
   return unless_force_offset(
-      shift,
-      [&](double offset_N) {
-        BlockCosts costs(kBlocks, 0.0);
-        for (const ForceErrors& errors : unmoved) add_costs(errors, offset_N, rows, blocks, jnd, costs);
-        return costs;
-      },
-      most_N);
+      shift, [&](double offset_N) { return costs_of(unmoved, offset_N); }, most_N);
 }
 
 }  // namespace palpate

@@ -85,7 +85,7 @@ double preload_offset_m(const Recording& recording, const EvaluatedModel& model)
 
 struct EvaluationRequest {
   // Called for every row, with positions as recorded and the first kMaxModels different models; may be empty.
-  ReplayVisitor also;
+  ReplayVisitor also{};
   // Errors count from this time of the recording on. Earlier rows are replayed because the features have memory.
   double counted_from_s = -std::numeric_limits<double>::infinity();
   const Recording* after = nullptr;  // the recording that this one continues (engine/tick/haptics_tick.h)
@@ -93,8 +93,8 @@ struct EvaluationRequest {
   bool move_surface = true;          // false: the figures with the surface moved equal those as recorded
   bool move_beginning = false;       // true: also those with `beginning_m`, where it is not 0
   // The models from which one common surface offset is estimated. Empty: each model has its own estimate.
-  std::vector<ModelPointer> surface_models;
-  FitControl control;
+  std::vector<ModelPointer> surface_models{};
+  FitControl control{};
 };
 
 // Of one model over all recordings.

@@ -1,7 +1,5 @@
 #include "scenes/evaluation/model_errors.h"
 
-#include <algorithm>
-#include <cmath>
 #include <numbers>
 #include <numeric>
 #include <utility>
@@ -14,6 +12,24 @@ namespace palpate {
 namespace {
 
 constexpr double kOneSided = 0.05;  // probability beyond a one-sided bound; beyond each end of an interval: half
+
+constexpr double kBinWidth_jnd = 2.0;
+// Bounds the memory where the JND line is flat. The last bin holds all larger forces.
+constexpr std::size_t kMaximumForceBins = 2000;
+
+// The index of the bin of a force, N; forces below 0 (sensor noise) are in bin 0.
+std::size_t force_bin(double force_N, const JndLine& jnd) noexcept {
+  const double over_offset = std::max(0.0, force_N) / jnd.offset_N;
+  const double jnds =
+      jnd.weber_fraction > 0.0 ? std::log1p(jnd.weber_fraction * over_offset) / jnd.weber_fraction : over_offset;
+  return static_cast<std::size_t>(std::min(jnds / kBinWidth_jnd, static_cast<double>(kMaximumForceBins - 1)));
+}
+
+// The smallest force in bin `index`, N.
+double force_bin_begin_N(std::size_t index, const JndLine& jnd) noexcept {
+  const double jnds = kBinWidth_jnd * static_cast<double>(index);
+  return jnd.offset_N * (jnd.weber_fraction > 0.0 ? std::expm1(jnd.weber_fraction * jnds) / jnd.weber_fraction : jnds);
+}
 
 // P(|T| <= t) of Student's t distribution. Source: Abramowitz & Stegun (1972), 26.7.3 and 26.7.4.
 double central_probability(double t, std::size_t degrees) {
@@ -115,18 +131,6 @@ bool is_worse(const Candidate& other, const Candidate& best, double Candidate::*
 
 }  // namespace
 
-std::size_t force_bin(double force_N, const JndLine& jnd) noexcept {
-  const double over_offset = std::max(0.0, force_N) / jnd.offset_N;
-  const double jnds =
-      jnd.weber_fraction > 0.0 ? std::log1p(jnd.weber_fraction * over_offset) / jnd.weber_fraction : over_offset;
-  return static_cast<std::size_t>(std::min(jnds / kBinWidth_jnd, static_cast<double>(kMaximumForceBins - 1)));
-}
-
-double force_bin_begin_N(std::size_t index, const JndLine& jnd) noexcept {
-  const double jnds = kBinWidth_jnd * static_cast<double>(index);
-  return jnd.offset_N * (jnd.weber_fraction > 0.0 ? std::expm1(jnd.weber_fraction * jnds) / jnd.weber_fraction : jnds);
-}
-
 void Moments::add(double value) {
   const double change = value - mean_;
   mean_ += change / static_cast<double>(++count_);
@@ -174,26 +178,14 @@ ErrorSummary ErrorFigures::summary(const JndLine& jnd) const {
 Interval UnitErrors::p99_interval() const { return interval_95(drawn_units.p99, units()); }
 
 double UnitErrors::within_at_least() const {
-  if (!has_intervals()) return kUnknown;
+  if (units() < kLeastUnits) return kUnknown;
   if (units_above_jnd == 0) return std::pow(kOneSided, 1.0 / static_cast<double>(units()));
   return std::max(0.0,
                   within_jnd - student_t(kOneSided, units() - 1) * ratio_standard_error(unit_within, unit_samples));
 }
 
-PairedDifference paired_difference(const UnitErrors& one, const UnitErrors& other) {
-  return {one.p99_error_over_jnd - other.p99_error_over_jnd,
-          difference_95(one.drawn_strokes, other.drawn_strokes, &Draws::p99)};
-}
-
-bool StrokeCounter::begins_stroke(double time_s, bool in_contact) {
-  if (!in_contact) {
-    in_air_ = true;
-    return false;
-  }
-  const bool begins = in_air_ && time_s - last_contact_s_ > kStrokePause_s;
-  in_air_ = false;
-  last_contact_s_ = time_s;
-  return begins;
+Interval p99_difference(const UnitErrors& one, const UnitErrors& other) {
+  return difference_95(one.drawn_strokes, other.drawn_strokes, &Draws::p99);
 }
 
 void ModelErrors::add(double model_N, double measured_N, bool out_of_domain, double bound_N) {

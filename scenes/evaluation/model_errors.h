@@ -5,10 +5,10 @@
 //   99 % error       the smallest error over the JND that 99 % of the samples do not exceed
 //                    (nearest rank)
 //   RMS, maximum     of |model - measured|
-// Every bin of the measured force is kBinWidth_jnd just noticeable differences wide. With JND(F) = o + w F the number
+// Every bin of the measured force is two just noticeable differences wide. With JND(F) = o + w F the number
 // of JNDs between 0 and F is
 //   u(F) = integral_0^F dF / JND = log(1 + w F / o) / w,   F / o where w is 0,
-// and bin k holds the forces with k <= u / kBinWidth_jnd < k + 1. With the paper's JND line this gives about
+// and bin k holds the forces with k <= u / 2 < k + 1. With the paper's JND line this gives about
 // 3 bins up to 0.3 N, 15 up to 6 N and 63 up to 3 kN.
 // Neighbouring samples are correlated, so intervals come from independent units: whole recordings where there are
 // several, else strokes (from touch to release). With fewer than kLeastUnits units there is no interval.
@@ -42,15 +42,6 @@ namespace palpate {
 inline constexpr const char* kJndDefinition =
     "One JND is the difference that people notice in three of four trials; 0.065 N + 6.33 % is the line of Hoever & "
     "Harders (2009), below their measured points.";
-
-inline constexpr double kBinWidth_jnd = 2.0;
-// Bounds the memory where the JND line is flat. The last bin holds all larger forces.
-inline constexpr std::size_t kMaximumForceBins = 2000;
-
-// The index of the bin of a force, N; forces below 0 (sensor noise) are in bin 0.
-std::size_t force_bin(double force_N, const JndLine& jnd) noexcept;
-// The smallest force in bin `index`, N.
-double force_bin_begin_N(std::size_t index, const JndLine& jnd) noexcept;
 
 // Mean, population standard deviation and maximum of non-negative values, updated without cancellation. Without values
 // all are 0.
@@ -140,9 +131,6 @@ struct Interval {
 inline constexpr std::size_t kLeastUnits = 3;
 inline constexpr std::size_t kResamples = 2000;
 
-// A loss of contact of at most this time does not end a stroke: noise at the surface causes it.
-inline constexpr double kStrokePause_s = 0.05;
-
 // The figures of the draws of units; empty with fewer than kLeastUnits units.
 struct Draws {
   std::size_t units = 0;
@@ -158,31 +146,15 @@ struct UnitErrors : ErrorSummary {
   Draws drawn_units, drawn_strokes;
 
   std::size_t units() const { return unit_samples.size(); }
-  bool has_intervals() const { return units() >= kLeastUnits; }
   // The following are NaN with fewer than kLeastUnits units.
   Interval p99_interval() const;  // 95 %, two-sided
   // 95 % lower bound of the share of samples within the JND; if units_above_jnd is 0, of the share of such units.
   double within_at_least() const;
 };
 
-// One model minus another over the same samples. The intervals are of 95 %, two-sided; NaN with fewer than kLeastUnits
-// strokes.
-struct PairedDifference {
-  double p99 = 0.0;  // JND
-  Interval interval;
-};
-PairedDifference paired_difference(const UnitErrors& one, const UnitErrors& other);
-
-// Detects the beginnings of strokes in one recording.
-class StrokeCounter {
- public:
-  // Call it for every row in time order. Returns true when the row begins a stroke.
-  bool begins_stroke(double time_s, bool in_contact);
-
- private:
-  double last_contact_s_ = -1e300;
-  bool in_air_ = true;  // since the last row in contact
-};
+// The 95 % interval, two-sided, of the 99 % error of one model minus that of another over the same samples, JND; NaN
+// with fewer than kLeastUnits strokes.
+Interval p99_difference(const UnitErrors& one, const UnitErrors& other);
 
 // Collects the errors of one model. It stores 4 bytes per sample, so that the 99 % error is exact, and 8 for a bound.
 class ModelErrors {

@@ -106,9 +106,8 @@ std::string level_text(const Level& level) {
 }
 
 std::string tag_text(const NameTag& tag) {
-  const bool left = tag.beside_panel || tag.begins_here;
   return "set label " + quoted(tag.text) + " at graph " + number(tag.x) + ", graph " + number(tag.y) +
-         (left ? " left offset character 0.7,0" : " right offset character -0.7,0") + " textcolor rgb " +
+         (tag.begins_here ? " left offset character 0.7,0" : " right offset character -0.7,0") + " textcolor rgb " +
          colour_of(tag.colour) + "\n";
 }
 
@@ -139,38 +138,6 @@ std::string panel_text(const Panel& panel, std::size_t index, const PanelSize& s
   return text + "plot " + (curves.empty() ? "NaN" : curves) + "\nunset arrow\nunset label\n";
 }
 
-}  // namespace
-
-Result<std::string> plot_script(Plot plot) {
-  for (Panel& panel : plot.panels) {
-    std::vector<Series> marks = cut_marks(panel);
-    panel.series.insert(panel.series.end(), marks.begin(), marks.end());
-  }
-  const auto assets = find_assets();
-  if (!assets) return assets.error();
-  const auto style = read_plain_file(*assets + "/figures/style.gp", "the style of all figures");
-  if (!style) return style.error();
-  const int rows = (static_cast<int>(plot.panels.size()) + plot.columns - 1) / plot.columns;
-  const int height = static_cast<int>(rows * kRowHeight * plot.height);
-  std::string text = "# gnuplot " + plot.name + ".gp draws " + plot.name + ".svg and " + plot.name + ".png here.\n";
-  const PanelSize size{plot.width * kPageWidth / plot.columns - 100.0, kPanelShare * kRowHeight * plot.height};
-  text += "width = " + std::to_string(static_cast<int>(plot.width * kPageWidth)) +
-          "\nheight = " + std::to_string(height) + "\n" + *style;
-  for (std::size_t p = 0; p < plot.panels.size(); ++p)
-    for (std::size_t s = 0; s < plot.panels[p].series.size(); ++s)
-      text += data_block(plot.panels[p].series[s], data_name(p, s));
-  for (const char* medium : {"svg", "png"}) {
-    text += "eval " + std::string(medium) + "\nset output '" + plot.name + "." + medium + "'\n";
-    text += "set multiplot layout " + std::to_string(rows) + "," + std::to_string(plot.columns) + "\n";
-    std::set<std::string> named;
-    for (std::size_t p = 0; p < plot.panels.size(); ++p) text += panel_text(plot.panels[p], p, size, named);
-    text += "unset multiplot\nunset output\n";
-  }
-  return text;
-}
-
-namespace {
-
 constexpr std::size_t kMostMoments = 3000;
 // The difference's axis reaches at least to the first, and beyond the second only for the first model.
 constexpr double kLeastScale_jnd = 1.6;
@@ -181,68 +148,6 @@ bool same_rows(const Series& one, const Series& other) {
     return a.y == b.y || (std::isnan(a.y) && std::isnan(b.y));
   });
 }
-
-}  // namespace
-
-void merge_equal(std::vector<Series>& series) {
-  for (std::size_t i = series.size(); i-- > 0;) {
-    for (std::size_t k = 0; k < i; ++k) {
-      if (series[k].mark == Mark::area || !same_rows(series[i], series[k])) continue;
-      series[k].name += ", " + series[i].name;
-      series.erase(series.begin() + static_cast<std::ptrdiff_t>(i));
-      break;
-    }
-  }
-}
-
-std::vector<Panel> compared_forces(const std::string& title, const std::vector<ComparedModel>& models,
-                                   const std::vector<ComparedMoment>& moments) {
-  const auto worst_of = [&](const ComparedMoment& moment) {
-    double worst = -1.0;
-    for (std::size_t i = 0; i < models.size(); ++i)
-      worst = std::max(worst, std::abs(moment.over_jnd(i, models[i].jnd)));
-    return worst;
-  };
-  Panel force;
-  Panel difference;
-  force.title = title;
-  force.y.title = "Force [N]";
-  difference.x.title = "Time [s]";
-  difference.y.title = "Difference [JND]";
-  for (Panel* panel : {&force, &difference}) {
-    panel->names_at_ends = true;
-    panel->x.low = moments.front().time_s;
-    panel->x.high = moments.back().time_s;
-  }
-  force.series = {{"measured", kMeasuredColour, Mark::line, {}}};
-  difference.series = {{"within 1 JND", kMutedColour, Mark::area, {}}};
-  for (std::size_t i = models.size(); i-- > 0;) {
-    for (Panel* panel : {&force, &difference}) panel->series.push_back(models[i].curve);
-  }
-  double largest = kLeastScale_jnd, of_first = 0.0;
-  const std::size_t group = moments.size() / kMostMoments + 1;
-  for (std::size_t begin = 0; begin < moments.size(); begin += group) {
-    const auto first = moments.begin() + static_cast<std::ptrdiff_t>(begin);
-    const auto last = moments.begin() + static_cast<std::ptrdiff_t>(std::min(begin + group, moments.size()));
-    const ComparedMoment& shown = *std::ranges::max_element(first, last, {}, worst_of);
-    largest = std::max(largest, 1.1 * worst_of(shown));
-    force.series[0].rows.push_back({shown.time_s, shown.measured_N});
-    difference.series[0].rows.push_back({shown.time_s, 0.0, -1.0, 1.0});
-    for (std::size_t i = 0; i < models.size(); ++i) {
-      const double over = shown.over_jnd(i, models[i].jnd);
-      if (i == 0) of_first = std::max(of_first, 1.1 * std::abs(over));
-      force.series[models.size() - i].rows.push_back({shown.time_s, shown.force_N[i]});
-      difference.series[models.size() - i].rows.push_back({shown.time_s, over});
-    }
-  }
-  difference.y.high = std::min(largest, std::max(kMostScale_jnd, of_first));
-  difference.y.low = -difference.y.high;
-  merge_equal(force.series);
-  merge_equal(difference.series);
-  return {std::move(force), std::move(difference)};
-}
-
-namespace {
 
 namespace fs = std::filesystem;
 
@@ -307,6 +212,89 @@ void remove_abandoned(const std::string& parent, const std::string& name) {
 }
 
 }  // namespace
+
+Result<std::string> plot_script(Plot plot) {
+  for (Panel& panel : plot.panels) {
+    std::vector<Series> marks = cut_marks(panel);
+    panel.series.insert(panel.series.end(), marks.begin(), marks.end());
+  }
+  const auto assets = find_assets();
+  if (!assets) return assets.error();
+  const auto style = read_plain_file(*assets + "/figures/style.gp", "the style of all figures");
+  if (!style) return style.error();
+  const int rows = (static_cast<int>(plot.panels.size()) + plot.columns - 1) / plot.columns;
+  const int height = static_cast<int>(rows * kRowHeight * plot.height);
+  std::string text = "# gnuplot " + plot.name + ".gp draws " + plot.name + ".svg and " + plot.name + ".png here.\n";
+  const PanelSize size{plot.width * kPageWidth / plot.columns - 100.0, kPanelShare * kRowHeight * plot.height};
+  text += "width = " + std::to_string(static_cast<int>(plot.width * kPageWidth)) +
+          "\nheight = " + std::to_string(height) + "\n" + *style;
+  for (std::size_t p = 0; p < plot.panels.size(); ++p)
+    for (std::size_t s = 0; s < plot.panels[p].series.size(); ++s)
+      text += data_block(plot.panels[p].series[s], data_name(p, s));
+  for (const char* medium : {"svg", "png"}) {
+    text += "eval " + std::string(medium) + "\nset output '" + plot.name + "." + medium + "'\n";
+    text += "set multiplot layout " + std::to_string(rows) + "," + std::to_string(plot.columns) + "\n";
+    std::set<std::string> named;
+    for (std::size_t p = 0; p < plot.panels.size(); ++p) text += panel_text(plot.panels[p], p, size, named);
+    text += "unset multiplot\nunset output\n";
+  }
+  return text;
+}
+
+void merge_equal(std::vector<Series>& series) {
+  for (std::size_t i = series.size(); i-- > 0;) {
+    for (std::size_t k = 0; k < i; ++k) {
+      if (series[k].mark == Mark::area || !same_rows(series[i], series[k])) continue;
+      series[k].name += ", " + series[i].name;
+      series.erase(series.begin() + static_cast<std::ptrdiff_t>(i));
+      break;
+    }
+  }
+}
+
+std::vector<Panel> compared_forces(const std::string& title, const std::vector<ComparedModel>& models,
+                                   const std::vector<ComparedMoment>& moments) {
+  const auto worst_of = [&](const ComparedMoment& moment) {
+    double worst = -1.0;
+    for (std::size_t i = 0; i < models.size(); ++i)
+      worst = std::max(worst, std::abs(moment.over_jnd(i, models[i].jnd)));
+    return worst;
+  };
+  const double from_s = moments.front().time_s, to_s = moments.back().time_s;
+  Panel force{.title = title,
+              .x = {.low = from_s, .high = to_s},
+              .y = {"Force [N]"},
+              .series = {{"measured", kMeasuredColour, Mark::line, {}}},
+              .names_at_ends = true};
+  Panel difference{.x = {.title = "Time [s]", .low = from_s, .high = to_s},
+                   .y = {"Difference [JND]"},
+                   .series = {{"within 1 JND", kMutedColour, Mark::area, {}}},
+                   .names_at_ends = true};
+  for (std::size_t i = models.size(); i-- > 0;) {
+    for (Panel* panel : {&force, &difference}) panel->series.push_back(models[i].curve);
+  }
+  double largest = kLeastScale_jnd, of_first = 0.0;
+  const std::size_t group = moments.size() / kMostMoments + 1;
+  for (std::size_t begin = 0; begin < moments.size(); begin += group) {
+    const auto first = moments.begin() + static_cast<std::ptrdiff_t>(begin);
+    const auto last = moments.begin() + static_cast<std::ptrdiff_t>(std::min(begin + group, moments.size()));
+    const ComparedMoment& shown = *std::ranges::max_element(first, last, {}, worst_of);
+    largest = std::max(largest, 1.1 * worst_of(shown));
+    force.series[0].rows.push_back({shown.time_s, shown.measured_N});
+    difference.series[0].rows.push_back({shown.time_s, 0.0, -1.0, 1.0});
+    for (std::size_t i = 0; i < models.size(); ++i) {
+      const double over = shown.over_jnd(i, models[i].jnd);
+      if (i == 0) of_first = std::max(of_first, 1.1 * std::abs(over));
+      force.series[models.size() - i].rows.push_back({shown.time_s, shown.force_N[i]});
+      difference.series[models.size() - i].rows.push_back({shown.time_s, over});
+    }
+  }
+  difference.y.high = std::min(largest, std::max(kMostScale_jnd, of_first));
+  difference.y.low = -difference.y.high;
+  merge_equal(force.series);
+  merge_equal(difference.series);
+  return {std::move(force), std::move(difference)};
+}
 
 ScratchFolder::ScratchFolder(const std::string& parent, const std::string& name)
     : path_(parent + "/" + name + std::string(kRandomLetters, 'X')) {

@@ -3,7 +3,8 @@
 // The names of series are in a legend above the panels, or with `names_at_ends` beside the curves. Tics of
 // logarithmic axes have SI prefixes (300 mN, 2 us, 3 kN). Lines that exceed a given limit of the y axis are marked at
 // the edge (below). Fonts, tics and neutral colours are in assets/figures/style.gp.
-// Thread guarantee: value types and pure functions; plot_script reads the asset.
+// Thread guarantee: value types and pure functions, slow side; plot_script reads the asset, ScratchFolder and what
+// draws does I/O and starts a process.
 #pragma once
 
 #include <cstdint>
@@ -50,8 +51,8 @@ struct Series {
 };
 
 struct Axis {
-  std::string title;  // with the unit, except on a logarithmic axis with `unit`
-  std::string unit;   // for the tics of a logarithmic axis, which get a prefix; empty: plain numbers
+  std::string title{};  // with the unit, except on a logarithmic axis with `unit`
+  std::string unit{};   // for the tics of a logarithmic axis, which get a prefix; empty: plain numbers
   bool logarithmic = false;
   double low = kNoValue;   // NaN: from the data
   double high = kNoValue;  // NaN: from the data
@@ -65,27 +66,26 @@ struct Level {
 };
 
 struct Panel {
-  std::string title;
-  Axis x;
-  Axis y;
-  std::vector<Series> series;
-  std::vector<Level> levels;
+  std::string title{};
+  Axis x{}, y{};
+  std::vector<Series> series{};
+  std::vector<Level> levels{};
   bool names_at_ends = false;
 };
 
 struct Plot {
-  std::string name;     // of its files
+  std::string name{};   // of its files
   int columns = 1;      // panels are placed row by row
   double width = 1.0;   // 1: 800 pixels
   double height = 1.0;  // of a row of panels; 1: 230 pixels
-  std::vector<Panel> panels;
+  std::vector<Panel> panels{};
+  std::string caption{};  // on a page; plain text
 };
 
 // Errors: the asset is missing.
 Result<std::string> plot_script(Plot plot);
 
 // Layout of a panel: ranges and tics of its axes, names beside curves and lines, marks where curves are cut off.
-// Thread guarantee: pure functions.
 
 struct AxisRange {
   double low = 0.0, high = 1.0;
@@ -117,7 +117,6 @@ std::vector<NameTag> name_tags(const Panel& panel, double line, double character
 std::vector<Series> cut_marks(const Panel& panel);
 
 // The forces of models beside a measured force over time, as panels of a figure.
-// Thread guarantee: pure functions.
 
 struct ComparedMoment {
   double time_s = 0.0, measured_N = 0.0;
@@ -144,9 +143,6 @@ std::vector<Panel> compared_forces(const std::string& title, const std::vector<C
 // Merges curves that are equal, because only one of them would be visible. Areas stay.
 void merge_equal(std::vector<Series>& series);
 
-// Draws plots into files with the external program gnuplot.
-// Thread guarantee: slow side; starts a process, does I/O.
-
 // A temporary folder in `parent`, which the destructor removes.
 class ScratchFolder {
  public:
@@ -161,7 +157,7 @@ class ScratchFolder {
   int lock_ = -1;  // of the folder: the system releases it when the program ends
 };
 
-// Errors: there is no gnuplot in PATH; says what to install.
+// Plots are drawn by the external program gnuplot. Errors: it is not in PATH; says what to install.
 Status find_gnuplot();
 
 // Writes NAME.gp, NAME.svg and NAME.png of every plot into `folder`, which exists. Errors: gnuplot is missing or

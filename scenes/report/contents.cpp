@@ -24,7 +24,8 @@ Table models_table(const ReportData& data) {
   for (const ModelResult& one : data.models) {
     const UnitErrors& errors = one.errors;
     const Interval p99 = errors.p99_interval();
-    const PairedDifference difference = paired_difference(errors, data.models[data.choice.best].errors);
+    const UnitErrors& best = data.models[data.choice.best].errors;
+    const Interval difference = p99_difference(errors, best);
     table.begin_row();
     table.add({"model", "model"}, one.name);
     table.add({"size", "size"}, one.size);
@@ -41,9 +42,10 @@ Table models_table(const ReportData& data) {
     table.add({"p99_error_over_jnd_high", ""}, p99.high);
     table.add({"p99_least", "seeds from"}, of_seeds(one, one.p99_range.low));
     table.add({"p99_greatest", "to"}, of_seeds(one, one.p99_range.high));
-    table.add({"difference_p99", "minus the best, 95 %", 1.0, kThree, 2}, difference.p99);
-    table.add({"difference_p99_low", ""}, difference.interval.low);
-    table.add({"difference_p99_high", ""}, difference.interval.high);
+    table.add({"difference_p99", "minus the best, 95 %", 1.0, kThree, 2},
+              errors.p99_error_over_jnd - best.p99_error_over_jnd);
+    table.add({"difference_p99_low", ""}, difference.low);
+    table.add({"difference_p99_high", ""}, difference.high);
     table.add({"rms_error_N", "RMS [mN]", kInMilli}, errors.rms_error_N);
     table.add({"max_error_N", "worst [mN]", kInMilli}, errors.max_error_N);
     table.add({"max_error_over_jnd", "worst [JND]"}, errors.max_error_over_jnd);
@@ -138,10 +140,7 @@ constexpr std::size_t kWorstModels = 3;  // in the figure of the worst stretch
 // The curves in the page: the extremes of so many groups of rows, and every row this near to a largest error.
 constexpr std::size_t kGroups = 900;
 constexpr double kWholeNear_s = 0.05;
-constexpr double kBudget_s = 1e-3;
-constexpr double kNear = 0.2;  // the budget is drawn if a tick takes more than this share of it
-// The curves omit bins with fewer samples.
-constexpr std::uint64_t kFewSamples = 20;
+constexpr double kNear = 0.2;  // the budget, the period of a tick, is drawn if a tick takes more than this share of it
 
 // The colour of the model's method, which the window uses as well; grey for no force.
 Hue model_colour(const ModelResult& model) { return model.plan ? Hue(colour_of(*model.plan)) : kMutedColour; }
@@ -154,12 +153,11 @@ using BinFigure = double (*)(const ForceBin&);
 
 // Error against force of the headline models with this base and 100 centres.
 Panel force_panel(const ReportData& data, const std::string& title, Base base, BinFigure figure) {
-  Panel panel;
-  panel.title = title + (base == Base::force ? ", on the force" : ", on the trend");
-  panel.x.title = "Measured force [N]";
-  panel.y = {"Error [JND]", "", true};
-  panel.names_at_ends = true;
-  panel.levels.push_back({1.0, "1 JND"});
+  Panel panel{.title = title + (base == Base::force ? ", on the force" : ", on the trend"),
+              .x = {"Measured force [N]"},
+              .y = {"Error [JND]", "", true},
+              .levels = {{1.0, "1 JND"}},
+              .names_at_ends = true};
   for (const std::size_t i : headline_models(data)) {
     const ModelResult& one = data.models[i];
     if (!one.plan || one.plan->base != base || one.selects_size) continue;
@@ -195,12 +193,11 @@ void share_scale(Panel& one, Panel& other) {
   one.y.high = other.y.high = std::max(first.high, second.high);
 }
 
-Figure speed_figure(const ReportData& data) {
-  Figure figure;
-  Panel panel;
-  panel.x = {"Time of a whole tick, log", "s", true};
-  panel.y = {"99 % of the errors are below [JND], log", "", true};
-  panel.names_at_ends = true;
+Plot speed_figure(const ReportData& data) {
+  Panel panel{.x = {"Time of a whole tick, log", "s", true},
+              .y = {"99 % of the errors are below [JND], log", "", true},
+              .levels = {{1.0, "1 JND"}},
+              .names_at_ends = true};
   double slowest_s = 0.0;
   double least = 1e300;
   const std::vector<std::size_t> shown = headline_models(data);
@@ -228,30 +225,27 @@ Figure speed_figure(const ReportData& data) {
          one.plan->method == &kTrendMethod ? Mark::square_bars : mark_of(one, Mark::hollow_bars, Mark::bars),
          {point}});
   }
-  panel.levels.push_back({1.0, "1 JND"});
   if (data.floor.p99_error_over_jnd > 0.3 * least) panel.levels.push_back({data.floor.p99_error_over_jnd, "noise"});
-  if (slowest_s > kNear * kBudget_s) {
-    panel.levels.push_back({kBudget_s, "budget 1 ms", true});
+  if (slowest_s > kNear * kHapticTick_s) {
+    panel.levels.push_back({kHapticTick_s, "budget 1 ms", true});
   } else {
     panel.x.title += " (the budget, 1 ms, is off to the right)";
   }
   // Room for names on the left of the fastest models.
   const AxisRange times = range_of(panel, false);
   panel.x.low = times.low * std::pow(times.low / times.high, 0.2);
-  figure.plot.name = "speed_error";
-  figure.plot.width = 0.75;
-  figure.plot.height = 1.9;
-  figure.plot.panels = {std::move(panel)};
-  figure.caption =
-      "Lower is more accurate, further left is faster; noise: that of the force sensor. Hollow: methods on the "
-      "measured force, as in the paper; square: the trend; filled: the trend and its correction. Horizontal bars: "
-      "spread of the time; "
-      "vertical: 95 % interval. A line joins two numbers of centres of one method.";
-  return figure;
+  return {
+      .name = "speed_error",
+      .width = 0.75,
+      .height = 1.9,
+      .panels = {std::move(panel)},
+      .caption =
+          "Lower is more accurate, further left is faster; noise: that of the force sensor. Hollow: methods on the "
+          "measured force, as in the paper; square: the trend; filled: the trend and its correction. Horizontal bars: "
+          "spread of the time; vertical: 95 % interval. A line joins two numbers of centres of one method."};
 }
 
-Figure worst_figure(const ReportData& data) {
-  Figure figure;
+Plot worst_figure(const ReportData& data) {
   const TestCurves& curves = data.curves;
   std::vector<ComparedModel> models;
   for (const std::size_t i : curves.models) {
@@ -262,34 +256,33 @@ Figure worst_figure(const ReportData& data) {
   }
   const std::vector<ComparedMoment> rows(curves.moments.begin() + static_cast<std::ptrdiff_t>(curves.first),
                                          curves.moments.begin() + static_cast<std::ptrdiff_t>(curves.last) + 1);
-  figure.plot.name = "worst_stretch";
-  figure.plot.panels = compared_forces(curves.recording->name, models, rows);
-  figure.plot.height = 0.8;
-  figure.caption = "The worst " + three_digits(rows.back().time_s - rows.front().time_s) + " s of " +
-                   data.models[data.choice.recommended].name + " (largest mean squared error over the JND): RMS " +
-                   three_digits(std::sqrt(std::max(0.0, curves.score))) +
-                   " JND. Below: model minus measurement; grey: within one JND.";
-  return figure;
+  return {.name = "worst_stretch",
+          .height = 0.8,
+          .panels = compared_forces(curves.recording->name, models, rows),
+          .caption = "The worst " + three_digits(rows.back().time_s - rows.front().time_s) + " s of " +
+                     data.models[data.choice.recommended].name + " (largest mean squared error over the JND): RMS " +
+                     three_digits(std::sqrt(std::max(0.0, curves.score))) +
+                     " JND. Below: model minus measurement; grey: within one JND."};
 }
 
-Figure force_figure(const ReportData& data) {
+Plot force_figure(const ReportData& data) {
   const std::pair<const char*, BinFigure> rows[] = {
       {"Mean + deviation", [](const ForceBin& bin) { return bin.over_jnd.mean() + bin.over_jnd.deviation(); }},
       {"Maximum", [](const ForceBin& bin) { return bin.over_jnd.largest(); }}};
-  Figure figure;
+  Plot plot{
+      .name = "error_by_force",
+      .columns = 2,
+      .caption =
+          "Error divided by the JND against force, in bins two JND wide; " + omitted_bins(data) +
+          ". Figures 5 and 7 of Hoever & Harders (2009) show the error divided by the force (drawn by palpate paper)."};
   for (const auto& [title, value] : rows) {
     Panel paper = force_panel(data, title, Base::force, value);
     Panel palpate = force_panel(data, title, Base::trend, value);
     share_scale(paper, palpate);
-    figure.plot.panels.push_back(std::move(paper));
-    figure.plot.panels.push_back(std::move(palpate));
+    plot.panels.push_back(std::move(paper));
+    plot.panels.push_back(std::move(palpate));
   }
-  figure.plot.name = "error_by_force";
-  figure.plot.columns = 2;
-  figure.caption =
-      "Error divided by the JND against force, in bins two JND wide; " + omitted_bins(data) +
-      ". Figures 5 and 7 of Hoever & Harders (2009) show the error divided by the force (drawn by palpate paper).";
-  return figure;
+  return plot;
 }
 
 }  // namespace
@@ -341,7 +334,7 @@ std::vector<Table> make_tables(const ReportData& data) {
   return {models_table(data), recordings_table(data), bins_table(data), gains_table(data.gains), times_table(data)};
 }
 
-std::vector<Figure> make_figures(const ReportData& data) {
+std::vector<Plot> make_figures(const ReportData& data) {
   return {speed_figure(data), worst_figure(data), force_figure(data)};
 }
 
@@ -409,7 +402,7 @@ std::string curves_json(const ReportData& data) {
     add_row(moments[(begin + end) / 2].time_s, [&](std::size_t column) { return extremes[column].second; });
   }
   nlohmann::ordered_json dots = nlohmann::ordered_json::array();
-  const Panel panel = speed_figure(data).plot.panels.front();
+  const Panel panel = speed_figure(data).panels.front();
   for (std::size_t k = 0; k < panel.series.size(); ++k)
     if (!panel.series[k].name.empty()) dots.push_back({k + 1, panel.series[k].name});
   const nlohmann::ordered_json about{{"models", models}, {"dots", dots}};

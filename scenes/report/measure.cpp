@@ -1,6 +1,5 @@
 #include "scenes/report/measure.h"
 
-#include <algorithm>
 #include <iterator>
 #include <set>
 #include <string_view>
@@ -13,14 +12,56 @@
 #include "engine/recording/recording.h"
 #include "models/correction/methods.h"
 #include "scenes/material/rig.h"
-#include "scenes/scene/scene.h"
 
 namespace palpate {
 namespace {
 
 constexpr double kPrepareSeconds = 1.0;   // estimate for one base
 constexpr double kEvaluateSeconds = 0.1;  // estimate for one model
+constexpr double kStretchSeconds = 5.0;   // length of the worst stretch
 constexpr double kShownAir_s = 0.1;       // free air at the ends of the worst stretch
+
+// `models`: up to kMaxModels. Samples before `counted_from_s` are replayed, but do not count.
+// The replay has the force zero and the beginning of `request`.
+TestCurves test_curves(const Recording& recording, const std::vector<ModelPointer>& models, const JndLine& jnd,
+                       const EvaluationRequest& request) {
+  TestCurves curves;
+  curves.recording = &recording;
+  std::vector<ComparedMoment>& rows = curves.moments;
+  // Over the rows before each: the sum of (error / JND)^2 of the first model, and the samples in contact.
+  std::vector<double> squares{0.0};
+  std::vector<std::size_t> contacts{0};
+  const auto visit = [&](const RecordingRow& row, const TickSnapshot& snapshot, const HapticsTick&) {
+    if (row.time_s < request.counted_from_s) return;
+    const bool contact = snapshot.in_contact;
+    const double ratio = contact ? jnd.error_over_jnd(snapshot.force_N[0], row.force_N) : 0.0;
+    squares.push_back(squares.back() + ratio * ratio);
+    contacts.push_back(contacts.back() + (contact ? 1 : 0));
+    const auto begin = snapshot.force_N.begin();
+    rows.push_back({row.time_s, row.force_N, contact, {begin, begin + snapshot.model_count}});
+  };
+  replay(with_force_zero(recording, request.force_zero_N), models, visit, 0.0, request.after);
+  const double length_s = std::min(kStretchSeconds, rows.back().time_s - rows.front().time_s);
+  std::size_t first = 0;
+  for (std::size_t last = 0; last < rows.size(); ++last) {
+    if (rows[last].time_s - rows.front().time_s < length_s) continue;
+    while (rows[last].time_s - rows[first].time_s > length_s) ++first;
+    // A quarter of the window is the least divisor, so that a window with little contact has a low score.
+    const std::size_t contact = std::max(contacts[last + 1] - contacts[first], (last - first) / 4 + 1);
+    const double score = (squares[last + 1] - squares[first]) / static_cast<double>(contact);
+    if (score <= curves.score) continue;
+    curves.score = score;
+    curves.first = first;
+    curves.last = last;
+  }
+  // Leaves out the free air before the first contact of the stretch, and after the last.
+  std::size_t begin = curves.first, end = curves.last;
+  while (begin < end && !rows[begin].in_contact) ++begin;
+  while (begin < end && !rows[end].in_contact) --end;
+  while (rows[begin].time_s - rows[curves.first].time_s > kShownAir_s) ++curves.first;
+  while (rows[curves.last].time_s - rows[end].time_s > kShownAir_s) --curves.last;
+  return curves;
+}
 
 class Measurement {
  public:
@@ -181,9 +222,7 @@ class Measurement {
 
   Status evaluate_test(const PreparedRecordingPointer& tested, double counted_from_s) {
     std::vector<EvaluatedModel> models;
-    EvaluationRequest request;
-    request.counted_from_s = counted_from_s;
-    request.after = data_.after;
+    EvaluationRequest request{.counted_from_s = counted_from_s, .after = data_.after};
     for (const ModelResult& one : models_) {
       if (!one.model) continue;
       models.push_back({one.model, data_.scene.jnd});
@@ -307,11 +346,10 @@ class Measurement {
       std::vector<ModelPointer> models;
       for (const std::size_t i : shown) models.push_back(models_[i].fits[fold]);
       for (const PreparedRecordingPointer& recording : data_.recordings.folds[fold].tested) {
-        EvaluationRequest request;
-        request.counted_from_s = data_.recordings.folds[fold].counted_from_s;
-        request.after = data_.after;
-        request.force_zero_N = recording->surface.force_zero_N;
-        TestCurves curves = test_curves(recording->recording, models, data_.scene.jnd, request);
+        TestCurves curves = test_curves(recording->recording, models, data_.scene.jnd,
+                                        {.counted_from_s = data_.recordings.folds[fold].counted_from_s,
+                                         .after = data_.after,
+                                         .force_zero_N = recording->surface.force_zero_N});
         if (curves.score > data_.curves.score) data_.curves = std::move(curves);
       }
     }
@@ -329,53 +367,9 @@ class Measurement {
 
 }  // namespace
 
-TestCurves test_curves(const Recording& recording, const std::vector<ModelPointer>& models, const JndLine& jnd,
-                       const EvaluationRequest& request) {
-  TestCurves curves;
-  curves.recording = &recording;
-  std::vector<ComparedMoment>& rows = curves.moments;
-  // Over the rows before each: the sum of (error / JND)^2 of the first model, and the samples in contact.
-  std::vector<double> squares{0.0};
-  std::vector<std::size_t> contacts{0};
-  const auto visit = [&](const RecordingRow& row, const TickSnapshot& snapshot, const HapticsTick&) {
-    if (row.time_s < request.counted_from_s) return;
-    const bool contact = snapshot.in_contact;
-    const double ratio = contact ? jnd.error_over_jnd(snapshot.force_N[0], row.force_N) : 0.0;
-    squares.push_back(squares.back() + ratio * ratio);
-    contacts.push_back(contacts.back() + (contact ? 1 : 0));
-    const auto begin = snapshot.force_N.begin();
-    rows.push_back({row.time_s, row.force_N, contact, {begin, begin + snapshot.model_count}});
-  };
-  replay(with_force_zero(recording, request.force_zero_N), models, visit, 0.0, request.after);
-  const double length_s = std::min(kStretchSeconds, rows.back().time_s - rows.front().time_s);
-  std::size_t first = 0;
-  for (std::size_t last = 0; last < rows.size(); ++last) {
-    if (rows[last].time_s - rows.front().time_s < length_s) continue;
-    while (rows[last].time_s - rows[first].time_s > length_s) ++first;
-    // A quarter of the window is the least divisor, so that a window with little contact has a low score.
-    const std::size_t contact = std::max(contacts[last + 1] - contacts[first], (last - first) / 4 + 1);
-    const double score = (squares[last + 1] - squares[first]) / static_cast<double>(contact);
-    if (score <= curves.score) continue;
-    curves.score = score;
-    curves.first = first;
-    curves.last = last;
-  }
-  // Leaves out the free air before the first contact of the stretch, and after the last.
-  std::size_t begin = curves.first, end = curves.last;
-  while (begin < end && !rows[begin].in_contact) ++begin;
-  while (begin < end && !rows[end].in_contact) --end;
-  while (rows[begin].time_s - rows[curves.first].time_s > kShownAir_s) ++curves.first;
-  while (rows[curves.last].time_s - rows[end].time_s > kShownAir_s) --curves.last;
-  return curves;
-}
-
 Result<ReportData> measure(const RecordingSet& recordings, const Scene& scene, bool quick, double budget_ns,
                            const FitControl& control, const Recording* after) {
-  ReportData data;
-  data.after = after;
-  data.scene = scene;
-  data.budget_ns = budget_ns;
-  data.recordings = recordings;
+  ReportData data{.scene = scene, .budget_ns = budget_ns, .recordings = recordings, .after = after};
   if (const Status status = Measurement(data, quick, control).run(); !status) return status.error();
   return data;
 }

@@ -21,10 +21,6 @@
 
 namespace palpate {
 
-// Divides the recordings of a report into training and test data, and refuses test data that is also training data.
-// Measured forces are compared bit by bit, because sensor noise makes them unique to a recording.
-// Thread guarantee: slow side (allocates).
-
 // The recordings of the paper on a virtual material: 41.499 s with seed 1 for training, 45.272 s with seed 2 for the
 // test. `share`: of both durations. Errors: those of record_sensors.
 Result<std::vector<PreparedRecordingPointer>> virtual_recordings(const std::string& material, double share = 1.0);
@@ -76,7 +72,8 @@ struct SharedStretch {
   std::size_t rows = 0;         // 0: there is none
 };
 
-// The first stretch of `tested` that is found with the forces of a stretch of `trained`. A common stretch of at least
+// The first stretch of `tested` that is found with the forces of a stretch of `trained`, compared bit by bit, because
+// sensor noise makes them unique to a recording. A common stretch of at least
 // 2 kLeakRows rows is always found if each kLeakRows successive rows of it have that many different forces.
 SharedStretch shared_stretch(const Recording& trained, const Recording& tested);
 
@@ -89,13 +86,11 @@ inline constexpr std::size_t kMostFolds = 5;
 Result<RecordingSet> split_recordings(std::vector<PreparedRecordingPointer> train,
                                       std::vector<PreparedRecordingPointer> test);
 
-inline constexpr double kStretchSeconds = 5.0;
-
 // The forces of models over one test recording.
 struct TestCurves {
   const Recording* recording = nullptr;
   std::vector<ComparedMoment> moments;  // the rows that count
-  // The stretch of kStretchSeconds in which the first model has the largest mean of (error / JND)^2 over the samples in
+  // The stretch of 5 s in which the first model has the largest mean of (error / JND)^2 over the samples in
   // contact, without the free air at its ends; a shorter recording is one stretch. The divisor of the mean is at least
   // a quarter of all samples of the stretch. It contains both rows, indices of `moments`.
   std::size_t first = 0, last = 0;
@@ -103,10 +98,8 @@ struct TestCurves {
   std::vector<std::size_t> models{};  // indices of ReportData::models, the recommended first; set by `measure`
 };
 
-// `models`: up to kMaxModels. Samples before `counted_from_s` are replayed, but do not count.
-// The replay has the force zero and the beginning of `request`.
-TestCurves test_curves(const Recording& recording, const std::vector<ModelPointer>& models, const JndLine& jnd,
-                       const EvaluationRequest& request = {});
+// Curves over the force omit bins with fewer samples.
+inline constexpr std::uint64_t kFewSamples = 20;
 
 // Whether the model is one of the comparison that everybody sees: voxel, random, kdtree and greedy as in the paper, the
 // trend, and the trend corrected by greedy.
@@ -152,22 +145,23 @@ struct TestedRecording {
 };
 
 struct ReportData {
-  Scene scene;
+  Scene scene{};
   double budget_ns = kBudget_ns;  // the longest tick of a candidate
-  RecordingSet recordings;
+  RecordingSet recordings{};
   const Recording* after = nullptr;  // the recording that the tests continue
-  std::vector<TestedRecording> tested;
-  std::map<const PreparedRecording*, std::ptrdiff_t> contact;  // rows of each recording in contact, as its errors count
-  NoiseFloor floor;                                            // of all test recordings together
-  std::vector<ModelResult> models;                             // the first is always 0 N; no two have the same forces
-  Ranking choice;                                              // of `models`
-  TestCurves curves;                      // of the recording with the worst stretch of the recommended model
-  std::vector<RecordingOffset> surfaces;  // of the training recordings; this and the following: of the first fold
-  std::vector<double> papers_times_s;     // relaxation times identified for the methods on the measured force
-  bool corrects = true;                   // whether cross-validation selected the correction
-  std::vector<PartGain> gains;            // of each part of the trend
-  std::map<int, OpenChoices> choices;     // of the methods on the measured force, by their number of centres; 0: direct
-  std::map<Base, ErrorBySize> by_size;    // empty in a quick report
+  std::vector<TestedRecording> tested{};
+  // Rows of each recording in contact, as its errors count.
+  std::map<const PreparedRecording*, std::ptrdiff_t> contact{};
+  NoiseFloor floor{};                       // of all test recordings together
+  std::vector<ModelResult> models{};        // the first is always 0 N; no two have the same forces
+  Ranking choice{};                         // of `models`
+  TestCurves curves{};                      // of the recording with the worst stretch of the recommended model
+  std::vector<RecordingOffset> surfaces{};  // of the training recordings; this and the following: of the first fold
+  std::vector<double> papers_times_s{};     // relaxation times identified for the methods on the measured force
+  bool corrects = true;                     // whether cross-validation selected the correction
+  std::vector<PartGain> gains{};            // of each part of the trend
+  std::map<int, OpenChoices> choices{};   // of the methods on the measured force, by their number of centres; 0: direct
+  std::map<Base, ErrorBySize> by_size{};  // empty in a quick report
 };
 
 // Fits every planned model once per fold and pools its errors over the folds. The forces of a test recording count from

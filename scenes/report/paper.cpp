@@ -2,12 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <vector>
 
 #include "engine/base/text.h"
 #include "models/correction/methods.h"
-#include "scenes/evaluation/model_errors.h"
-#include "scenes/report/publish.h"
 
 namespace palpate {
 namespace {
@@ -306,17 +303,6 @@ class Claims {
 
 }  // namespace
 
-const char* verdict_name(ClaimVerdict verdict) {
-  constexpr const char* kNames[] = {"",
-                                    "reproduced",
-                                    "not reproduced",
-                                    "not decided by --quick",
-                                    "another machine",
-                                    "another recording",
-                                    "simulated subjects"};
-  return kNames[static_cast<std::size_t>(verdict)];
-}
-
 std::string run_name(const PaperRun& run) { return run.material + (run.fitted_times ? ", fitted times" : ""); }
 
 std::vector<Claim> paper_claims(const PaperData& data) { return Claims(data).all(); }
@@ -333,43 +319,35 @@ Series jnd_curve(const JndLine& jnd, double from_N, double to_N, bool relative) 
   return curve;
 }
 
-Figure bins_figure(const PaperData& data, int number, const std::string& title, bool relative, BinFigure value) {
-  Figure figure;
-  figure.plot.name = "figure_" + std::to_string(number);
-  figure.plot.columns = 2;
-  figure.caption = "Figure " + std::to_string(number) + ": " + title + " over the measured force.";
+Plot bins_figure(const PaperData& data, int number, const std::string& title, bool relative, BinFigure value) {
+  Plot plot{.name = "figure_" + std::to_string(number),
+            .columns = 2,
+            .caption = "Figure " + std::to_string(number) + ": " + title + " over the measured force."};
   for (const PaperRun& run : data.runs) {
-    Panel panel;
-    panel.title = run_name(run);
-    panel.x.title = "Force [N]";
-    panel.y = {relative ? "Relative error" : "Error", relative ? "" : "N", true};
-    panel.names_at_ends = true;
+    Panel panel{.title = run_name(run),
+                .x = {"Force [N]"},
+                .y = {relative ? "Relative error" : "Error", relative ? "" : "N", true},
+                .names_at_ends = true};
     for (const PaperModel& model : run.models) {
       Series& series = panel.series.emplace_back(Series{model.name, model.colour, Mark::curve, {}});
       for (const ForceBin& bin : model.errors.bins) series.rows.push_back({bin.force_N.mean(), value(bin)});
     }
     const std::vector<PlotRow> rows = panel.series.front().rows;  // at the same forces as all
     panel.series.push_back(jnd_curve(data.jnd, rows.front().x, rows.back().x, relative));
-    figure.plot.panels.push_back(std::move(panel));
+    plot.panels.push_back(std::move(panel));
   }
-  return figure;
+  return plot;
 }
 
 // Computation times over `x`, in one panel. `about`: what follows the number in the caption.
-Figure time_figure(int number, const std::string& about, const Axis& x, std::vector<Series> series) {
-  Figure figure;
-  figure.plot.name = "figure_" + std::to_string(number);
-  figure.plot.width = 0.6;
-  figure.caption = "Figure " + std::to_string(number) + ": computation time over the " + about;
-  Panel& panel = figure.plot.panels.emplace_back();
-  panel.x = x;
-  panel.y = {"Time", "s", true};
-  panel.names_at_ends = true;
-  panel.series = std::move(series);
-  return figure;
+Plot time_figure(int number, const std::string& about, const Axis& x, std::vector<Series> series) {
+  return {.name = "figure_" + std::to_string(number),
+          .width = 0.6,
+          .panels = {{.x = x, .y = {"Time", "s", true}, .series = std::move(series), .names_at_ends = true}},
+          .caption = "Figure " + std::to_string(number) + ": computation time over the " + about};
 }
 
-Figure dimension_figure(const PaperData& data) {
+Plot dimension_figure(const PaperData& data) {
   Series solve{"solve", kInkColour, Mark::curve, {}};
   Series grid{"grid", kVoxelMethod.colour, Mark::curve, {}};
   Series both{"both", kMutedColour, Mark::curve, {}};
@@ -383,19 +361,17 @@ Figure dimension_figure(const PaperData& data) {
                      {"Dimensions", ""}, {both, solve, grid});
 }
 
-Figure jnd_figure(const PaperData& data) {
-  Figure figure;
-  figure.plot.name = "figure_3";
-  figure.plot.columns = 2;
-  figure.plot.height = 1.5;
-  figure.caption =
-      "Figure 3: JND of twelve simulated subjects in the paper's study, with standard errors, and the point of Pang, "
-      "Tan & Durlach (1991); the line through them, and the paper's conservative line, 0.065 N + 6.33 %. The paper's "
-      "13.3 % at 2.5 N is the only one of its points with a published value.";
+Plot jnd_figure(const PaperData& data) {
+  Plot plot{.name = "figure_3",
+            .columns = 2,
+            .height = 1.5,
+            .caption =
+                "Figure 3: JND of twelve simulated subjects in the paper's study, with standard errors, and the point "
+                "of Pang, "
+                "Tan & Durlach (1991); the line through them, and the paper's conservative line, 0.065 N + 6.33 %. The "
+                "paper's "
+                "13.3 % at 2.5 N is the only one of its points with a published value."};
   for (const bool relative : {false, true}) {
-    Panel panel;
-    panel.x.title = "Reference force [N]";
-    panel.y.title = relative ? "Relative JND" : "JND [N]";
     Series study{"simulated study", kGreedyMethod.colour, Mark::bars, {}};
     Series other{"Pang et al.", kRandomMethod.colour, Mark::bars, {}};
     Series papers{"the paper", kMeasuredColour, Mark::bars, {{2.5, relative ? 0.133 : 0.133 * 2.5}}};
@@ -410,13 +386,15 @@ Figure jnd_figure(const PaperData& data) {
     fitted.mark = Mark::line;
     Series conservative = jnd_curve(data.jnd, 0.2, 3.0, relative);
     conservative.name = "conservative line";
-    panel.series = {std::move(study), std::move(other), std::move(papers), std::move(fitted), std::move(conservative)};
-    figure.plot.panels.push_back(std::move(panel));
+    plot.panels.push_back({.x = {"Reference force [N]"},
+                           .y = {relative ? "Relative JND" : "JND [N]"},
+                           .series = {std::move(study), std::move(other), std::move(papers), std::move(fitted),
+                                      std::move(conservative)}});
   }
-  return figure;
+  return plot;
 }
 
-Figure sites_figure(const PaperData& data) {
+Plot sites_figure(const PaperData& data) {
   std::vector<Series> curves;
   for (std::size_t i = 0; i < data.runs.front().models.size(); ++i) {
     const PaperModel& model = data.runs.front().models[i];
@@ -427,7 +405,7 @@ Figure sites_figure(const PaperData& data) {
                      {"Data points", "", true}, std::move(curves));
 }
 
-std::vector<Figure> paper_figures(const PaperData& data) {
+std::vector<Plot> paper_figures(const PaperData& data) {
   return {
       dimension_figure(data),
       jnd_figure(data),
@@ -437,6 +415,17 @@ std::vector<Figure> paper_figures(const PaperData& data) {
       bins_figure(data, 6, "maximum absolute error", false, largest),
       bins_figure(data, 7, "maximum relative error", true, [](const ForceBin& bin) { return bin.relative.largest(); }),
       sites_figure(data)};
+}
+
+const char* verdict_name(ClaimVerdict verdict) {
+  constexpr const char* kNames[] = {"",
+                                    "reproduced",
+                                    "not reproduced",
+                                    "not decided by --quick",
+                                    "another machine",
+                                    "another recording",
+                                    "simulated subjects"};
+  return kNames[static_cast<std::size_t>(verdict)];
 }
 
 Table claims_table(const PaperData& data, const std::vector<Claim>& claims) {

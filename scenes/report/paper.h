@@ -86,7 +86,6 @@ enum class ClaimVerdict {
   other_recording,
   other_subjects,
 };
-const char* verdict_name(ClaimVerdict verdict);  // "reproduced", "another machine", ...; empty for none
 
 // A claim of the paper, compared with the results.
 struct Claim {

@@ -1,17 +1,9 @@
-#include <algorithm>
 #include <ctime>
-#include <optional>
-#include <utility>
 
-#include "engine/tick/motion_estimator.h"
 #include "models/correction/methods.h"
-#include "models/fit/fit.h"
 #include "models/model/kernels.h"
-#include "scenes/evaluation/evaluate.h"
 #include "scenes/report/measure.h"
 #include "scenes/report/paper.h"
-#include "scenes/scene/scene.h"
-#include "scenes/study/study_analysis.h"
 
 namespace palpate {
 namespace {
@@ -20,8 +12,6 @@ constexpr double kQuickShare = 0.2;  // of the recordings
 constexpr double kStep_N = 0.05;
 const std::vector<int> kGrid{25, 11, 11, 11};
 constexpr int kNodesOfFigure2 = 10;
-// Bins with fewer samples are omitted.
-constexpr std::uint64_t kReducedSamples = 20;
 // Relaxation times of the fifth and sixth dimension of figure 2; the paper does not give them.
 constexpr double kMoreTimes_s[] = {0.05, 4.0};
 constexpr int kSubjects = 12;
@@ -173,15 +163,13 @@ class PaperMeasurement {
         }
       }
     }
-    EvaluationRequest as_recorded;
-    as_recorded.move_surface = false;
-    const auto result = evaluate(tested, evaluated, as_recorded);
+    const auto result = evaluate(tested, evaluated, {.move_surface = false});
     if (!result) return result.error();
     auto one = result->models.begin();
     for (std::vector<PaperModel>* list : {&run.models, &run.repeated, &run.settings}) {
       for (PaperModel& model : *list) {
         model.errors = (one++)->as_recorded.summary();
-        std::erase_if(model.errors.bins, [](const ForceBin& bin) { return bin.force_N.count() < kReducedSamples; });
+        std::erase_if(model.errors.bins, [](const ForceBin& bin) { return bin.force_N.count() < kFewSamples; });
       }
     }
     models.resize(kPaperMethods);

@@ -7,7 +7,6 @@
 #include <cstdio>
 #include <filesystem>
 #include <system_error>
-#include <utility>
 
 #include "engine/base/files.h"
 #include "engine/base/text.h"
@@ -94,11 +93,11 @@ Status check_target(const fs::path& path, bool overwrite) {
   return {};
 }
 
-std::string figure_html(const Figure& figure, const std::string& svg) {
+std::string figure_html(const Plot& figure, const std::string& svg) {
   // Text has the same size in narrow figures and in wide ones.
-  return "<figure style=\"max-width: " + general(kPageWidth_rem * figure.plot.width, 3) + "rem\">" +
-         inline_svg(svg, figure.plot.name, figure.caption) + "<figcaption>" + escape_html(figure.caption) +
-         " <a class=\"data\" href=\"figures/" + figure.plot.name + ".gp\">data and script</a></figcaption></figure>\n";
+  return "<figure style=\"max-width: " + general(kPageWidth_rem * figure.width, 3) + "rem\">" +
+         inline_svg(svg, figure.name, figure.caption) + "<figcaption>" + escape_html(figure.caption) +
+         " <a class=\"data\" href=\"figures/" + figure.name + ".gp\">data and script</a></figcaption></figure>\n";
 }
 
 // Returns assets/report/NAME with every {{key}} replaced by its value.
@@ -137,18 +136,13 @@ std::string escape_html(std::string_view text) {
 }
 
 std::string table_csv(const Table& table) {
-  std::string text;
-  for (std::size_t i = 0; i < table.columns.size(); ++i) {
-    if (i > 0) text.push_back(',');
-    text += table.columns[i].key;
-  }
-  text.push_back('\n');
+  std::vector<std::string> keys;
+  for (const TableColumn& column : table.columns) keys.push_back(column.key);
+  std::string text = joined(keys, ",") + "\n";
   for (const auto& row : table.rows) {
-    for (std::size_t i = 0; i < row.size(); ++i) {  // a row without cells is a blank line
-      if (i > 0) text.push_back(',');
-      text += csv_cell(row[i]);
-    }
-    text.push_back('\n');
+    std::vector<std::string> cells;
+    for (const TableCell& cell : row) cells.push_back(csv_cell(cell));
+    text += joined(cells, ",") + "\n";  // a row without cells is a blank line
   }
   return text;
 }
@@ -287,7 +281,7 @@ Status ReportFolder::commit() {
 }
 
 Status write_report(ReportFolder& folder, const PageRequest& request, const std::string& page_template,
-                    const std::vector<Table>& tables, const std::vector<Figure>& figures,
+                    const std::vector<Table>& tables, const std::vector<Plot>& figures,
                     std::map<std::string, std::string> parts, const nlohmann::ordered_json& report,
                     const FitControl& control) {
   for (const Table& table : tables) {
@@ -298,16 +292,14 @@ Status write_report(ReportFolder& folder, const PageRequest& request, const std:
   const std::string place = folder.path_of("figures");
   std::error_code ignored;
   fs::create_directories(place, ignored);
-  std::vector<Plot> plots;
-  for (const Figure& figure : figures) plots.push_back(figure.plot);
-  const Status drawn = draw_plots(place, plots);
+  const Status drawn = draw_plots(place, figures);
   // Ctrl-C at a terminal ends gnuplot as well; the report is then interrupted, not wrong.
   if (!control.may_continue(0.99)) return interrupted();
   if (!drawn) return drawn;
-  for (const Figure& figure : figures) {
-    const auto svg = read_plain_file(place + "/" + figure.plot.name + ".svg", "a drawing of gnuplot");
+  for (const Plot& figure : figures) {
+    const auto svg = read_plain_file(place + "/" + figure.name + ".svg", "a drawing of gnuplot");
     if (!svg) return svg.error();
-    parts["figures"] += parts[figure.plot.name] = figure_html(figure, *svg);
+    parts["figures"] += parts[figure.name] = figure_html(figure, *svg);
   }
   const auto style = read_template("style.css");
   if (!style) return style.error();

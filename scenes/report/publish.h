@@ -112,11 +112,7 @@ struct PageRequest {
   bool force = false;   // replaces an earlier page there
   std::string command;  // that made it; for the page, as the version of the program
   std::string version;
-};
-
-struct Figure {
-  Plot plot;
-  std::string caption;  // plain text
+  bool json = false;  // the results are printed as JSON
 };
 
 // Writes tables/NAME.csv, the figures into the subfolder figures, report.json, which marks the folder as a report that
@@ -126,7 +122,7 @@ struct Figure {
 // `parts` has of it. Errors: those of ReportFolder and draw_plots; a template is missing or has an unknown key; a file
 // cannot be read or written; interrupted.
 Status write_report(ReportFolder& folder, const PageRequest& request, const std::string& page_template,
-                    const std::vector<Table>& tables, const std::vector<Figure>& figures,
+                    const std::vector<Table>& tables, const std::vector<Plot>& figures,
                     std::map<std::string, std::string> parts, const nlohmann::ordered_json& report,
                     const FitControl& control);
 

@@ -3,7 +3,6 @@
 #include <sys/utsname.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -12,9 +11,8 @@
 
 #include "engine/base/files.h"
 #include "engine/base/text.h"
+#include "engine/live/pacer.h"
 #include "models/model/file/model_io.h"
-#include "scenes/evaluation/model_errors.h"
-#include "scenes/scene/scene.h"
 
 namespace palpate {
 namespace {
@@ -149,12 +147,12 @@ std::vector<std::string> details(const ReportData& data, const ReportRequest& re
 
 // All numbers of the report. Those that differ from run to run are in "timings".
 OrderedJson report_json(const ReportData& data, const ReportRequest& request, const std::vector<Table>& tables,
-                        const std::vector<Figure>& figures, const std::string& machine, double seconds) {
+                        const std::vector<Plot>& figures, const std::string& machine, double seconds) {
   OrderedJson numbers = OrderedJson::object();
   OrderedJson times = OrderedJson::object();
   for (const Table& table : tables) (table.has_times ? times : numbers)[table.name] = table_json(table);
   OrderedJson list = OrderedJson::array();
-  for (const Figure& figure : figures) list.push_back(figure.plot.name);
+  for (const Plot& figure : figures) list.push_back(figure.name);
   OrderedJson candidates = OrderedJson::array(), as_good = OrderedJson::array();
   for (std::size_t i = 1; i < data.models.size(); ++i) {
     candidates.push_back(data.models[i].name);
@@ -305,7 +303,7 @@ Result<std::string> model_text(const ReportData& data, const ReportRequest& requ
 }  // namespace
 
 Result<ReportAnswer> make_report(const ReportRequest& request, const FitControl& control) {
-  const auto start = std::chrono::steady_clock::now();
+  const double start_s = steady_now_s();
   if (const Status gnuplot = find_gnuplot(); !gnuplot) return gnuplot.error();
   // The folder is created before the fits, so that an error of it is reported at once.
   auto folder = ReportFolder::create(request.out, request.force);
@@ -319,10 +317,10 @@ Result<ReportAnswer> make_report(const ReportRequest& request, const FitControl&
   auto model = model_text(*data, request, control.part(kMeasuringShare, 0.99));
   if (!model) return model.error();
   const std::vector<Table> tables = make_tables(*data);
-  const std::vector<Figure> figures = make_figures(*data);
+  const std::vector<Plot> figures = make_figures(*data);
   const std::string machine =
       processor() + ", " + std::to_string(std::max(1U, std::thread::hardware_concurrency())) + " cores";
-  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  const double seconds = steady_now_s() - start_s;
   const OrderedJson json = report_json(*data, request, tables, figures, machine, seconds);
   std::vector<std::string> tests;
   for (const TestedRecording& one : data->tested) tests.push_back(one.recording->recording.name);

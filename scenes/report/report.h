@@ -13,9 +13,6 @@
 
 namespace palpate {
 
-// The tables of the report and its figures with captions.
-// Thread guarantee: pure functions.
-
 // The first table of the page, which the terminal shows too: the models of headline_models.
 Table headline_table(const ReportData& data);
 
@@ -31,7 +28,7 @@ std::vector<Table> make_tables(const ReportData& data);
 std::string curves_json(const ReportData& data);
 
 // Error over time, the worst stretch, and the error by force.
-std::vector<Figure> make_figures(const ReportData& data);
+std::vector<Plot> make_figures(const ReportData& data);
 
 struct ReportRequest : PageRequest {
   Scene scene;

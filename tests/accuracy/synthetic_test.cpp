@@ -86,7 +86,7 @@ TEST(SyntheticAccuracy, ForeignPhysicsByDefault) {
     // A correction is used where it lowers the cross-validated squared error. On the test it may be no significant
     // loss: neither a twentieth of the RMS, nor, over the strokes, of the 99 % error.
     EXPECT_LE(greedy.rms_error_N, 1.05 * trend.rms_error_N);
-    EXPECT_LE(paired_difference(greedy, trend).interval.low, 0.0);
+    EXPECT_LE(p99_difference(greedy, trend).low, 0.0);
   }
 }
 
