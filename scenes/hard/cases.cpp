@@ -1,12 +1,9 @@
 // The cases of each kind: sites, recordings, and materials (motions, and a hand in closed loop).
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <numbers>
 
-#include "engine/base/random_stream.h"
 #include "scenes/hard/hard.h"
-#include "scenes/material/material.h"
 #include "scenes/material/material_laws.h"
 #include "scenes/material/rig.h"
 
@@ -144,91 +141,86 @@ void first_sites(SiteSet& set, Eigen::Index count) {
 
 void sites_twice(SiteSet& set) { set.points.rightCols(kSites / 2) = set.points.leftCols(kSites / 2).eval(); }
 
-// Noise of 5 mN, a change of the true force of 10 mN from tick to tick. The trend alone cannot describe these forces.
-struct SiteCase {
-  const char* name;
-  void (*shape)(SiteSet& set);
-};
-const SiteCase kSiteCases[] = {
-    {"sites, nothing wrong", [](SiteSet&) {}},
-    {"repeated sites", sites_twice},
-    {"repeated sites that disagree",
-     [](SiteSet& set) {
-       sites_twice(set);
-       set.fault = [](Eigen::VectorXd& force_N) {
-         force_N.tail(kSites / 2).array() += 0.05;
-         force_N.head(kSites / 2).array() -= 0.05;
-       };
-     }},
-    {"clusters of 1e-9", [](SiteSet& set) { in_clusters(set, 1e-9); }},
-    {"clusters of 1e-6", [](SiteSet& set) { in_clusters(set, 1e-6); }},
-    {"clusters of 1e-3", [](SiteSet& set) { in_clusters(set, 1e-3); }},
-    {"one force per cluster",
-     [](SiteSet& set) {
-       in_clusters(set, 5e-3, 1000);
-       set.fault = [](Eigen::VectorXd& force_N) {
-         for (Eigen::Index i = 40; i < force_N.size(); ++i) force_N(i) = force_N(i % 40);
-       };
-     }},
-    {"sites on a line", [](SiteSet& set) { mapped(set, [](double u, double) { return Point(u, 0.8 * u + 0.1); }); }},
-    {"sites on a curve",
-     [](SiteSet& set) { mapped(set, [](double u, double) { return Point(u, 4.0 * u * (1.0 - u)); }); }},
-    {"a feature that is constant", [](SiteSet& set) { mapped(set, [](double u, double) { return Point(u, 0.7); }); }},
-    {"all sites at one point", [](SiteSet& set) { mapped(set, [](double, double) { return Point(0.6, 0.45); }); }},
-    {"a dense and a sparse part",
-     [](SiteSet& set) {
-       for (Eigen::Index i = 0; i < kSites; ++i)
-         if (i % 8 != 0) set.points.col(i) = Point(0.5, 0.5) + 1e-5 * set.points.col(i);
-       set.tested = set.points;
-     }},
-    {"scales of 1e-6 and 1e6",
-     [](SiteSet& set) {
-       set.unit = {1e-6, 1e6};
-     }},
-    {"scales of 1e6 and 1e-6",
-     [](SiteSet& set) {
-       set.unit = {1e6, 1e-6};
-     }},
-    {"forces of 1e-6", [](SiteSet& set) { set.force_unit = 1e-6; }},
-    {"forces of 1e6", [](SiteSet& set) { set.force_unit = 1e6; }},
-    {"outliers",
-     [](SiteSet& set) {
-       set.fault = [](Eigen::VectorXd& force_N) {
-         for (Eigen::Index i = 7; i < force_N.size(); i += 20) force_N(i) += 20.0;
-       };
-     }},
-    {"a gap",
-     [](SiteSet& set) {
-       for (Eigen::Index i = 0; i < kSites; ++i) {
-         double& u = set.points(0, i);
-         u = u < 0.5 ? 0.7 * u : 1.0 - 0.7 * (1.0 - u);
-       }
-     }},
-    {"1 site", [](SiteSet& set) { first_sites(set, 1); }},
-    {"3 sites", [](SiteSet& set) { first_sites(set, 3); }},
-    {"sizes above the number of sites", [](SiteSet& set) { first_sites(set, 40); }},
-    {"10,000 sites", [](SiteSet& set) { set.points = random_points(10000, 1); }},
-    {"all forces zero", [](SiteSet& set) { set.force_unit = 0.0; }},
-};
+HardCase site_case(const char* name, void (*shape)(SiteSet& set)) {
+  return {
+      name, "sites", [shape] {
+        const auto set = std::make_shared<SiteSet>();
+        shape(*set);
+        const TrainingScene scene{"hard case", {{FeatureKind::depth, 0.0, {}}, {FeatureKind::velocity, 0.0, {}}}, {}};
+        const ModelPlan plan{.thinning = Thinning::none, .features = FeatureChoice::scene};
+        return HardTrial{std::make_shared<HardTraining>(ModelFits(samples_of(*set), scene), plan),
+                         [set](const auto& model) { return measure(*set, *model); }};
+      }};
+}
 
 }  // namespace
 
+// Noise of 5 mN, a change of the true force of 10 mN from tick to tick. The trend alone cannot describe these forces.
 std::vector<HardCase> site_cases() {
-  std::vector<HardCase> cases;
-  for (const SiteCase& one : kSiteCases) {
-    cases.push_back({one.name, HardKind::sites, [shape = one.shape] {
-                       const auto set = std::make_shared<SiteSet>();
-                       shape(*set);
-                       const TrainingScene scene{
-                           "hard case", {{FeatureKind::depth, 0.0, {}}, {FeatureKind::velocity, 0.0, {}}}, {}};
-                       ModelPlan plan;
-                       plan.thinning = Thinning::none;
-                       plan.features = FeatureChoice::scene;
-                       return HardTrial{std::make_shared<HardTraining>(ModelFits(samples_of(*set), scene), plan),
-                                        [set](const auto& model) { return measure(*set, *model); }};
-                     }});
-  }
-  return cases;
+  return {
+      site_case("sites, nothing wrong", [](SiteSet&) {}),
+      site_case("repeated sites", sites_twice),
+      site_case("repeated sites that disagree",
+                [](SiteSet& set) {
+                  sites_twice(set);
+                  set.fault = [](Eigen::VectorXd& force_N) {
+                    force_N.tail(kSites / 2).array() += 0.05;
+                    force_N.head(kSites / 2).array() -= 0.05;
+                  };
+                }),
+      site_case("clusters of 1e-9", [](SiteSet& set) { in_clusters(set, 1e-9); }),
+      site_case("clusters of 1e-6", [](SiteSet& set) { in_clusters(set, 1e-6); }),
+      site_case("clusters of 1e-3", [](SiteSet& set) { in_clusters(set, 1e-3); }),
+      site_case("one force per cluster",
+                [](SiteSet& set) {
+                  in_clusters(set, 5e-3, 1000);
+                  set.fault = [](Eigen::VectorXd& force_N) {
+                    for (Eigen::Index i = 40; i < force_N.size(); ++i) force_N(i) = force_N(i % 40);
+                  };
+                }),
+      site_case("sites on a line",
+                [](SiteSet& set) { mapped(set, [](double u, double) { return Point(u, 0.8 * u + 0.1); }); }),
+      site_case("sites on a curve",
+                [](SiteSet& set) { mapped(set, [](double u, double) { return Point(u, 4.0 * u * (1.0 - u)); }); }),
+      site_case("a feature that is constant",
+                [](SiteSet& set) { mapped(set, [](double u, double) { return Point(u, 0.7); }); }),
+      site_case("all sites at one point",
+                [](SiteSet& set) { mapped(set, [](double, double) { return Point(0.6, 0.45); }); }),
+      site_case("a dense and a sparse part",
+                [](SiteSet& set) {
+                  for (Eigen::Index i = 0; i < kSites; ++i)
+                    if (i % 8 != 0) set.points.col(i) = Point(0.5, 0.5) + 1e-5 * set.points.col(i);
+                  set.tested = set.points;
+                }),
+      site_case("scales of 1e-6 and 1e6",
+                [](SiteSet& set) {
+                  set.unit = {1e-6, 1e6};
+                }),
+      site_case("scales of 1e6 and 1e-6",
+                [](SiteSet& set) {
+                  set.unit = {1e6, 1e-6};
+                }),
+      site_case("forces of 1e-6", [](SiteSet& set) { set.force_unit = 1e-6; }),
+      site_case("forces of 1e6", [](SiteSet& set) { set.force_unit = 1e6; }),
+      site_case("outliers",
+                [](SiteSet& set) {
+                  set.fault = [](Eigen::VectorXd& force_N) {
+                    for (Eigen::Index i = 7; i < force_N.size(); i += 20) force_N(i) += 20.0;
+                  };
+                }),
+      site_case("a gap",
+                [](SiteSet& set) {
+                  for (Eigen::Index i = 0; i < kSites; ++i) {
+                    double& u = set.points(0, i);
+                    u = u < 0.5 ? 0.7 * u : 1.0 - 0.7 * (1.0 - u);
+                  }
+                }),
+      site_case("1 site", [](SiteSet& set) { first_sites(set, 1); }),
+      site_case("3 sites", [](SiteSet& set) { first_sites(set, 3); }),
+      site_case("sizes above the number of sites", [](SiteSet& set) { first_sites(set, 40); }),
+      site_case("10,000 sites", [](SiteSet& set) { set.points = random_points(10000, 1); }),
+      site_case("all forces zero", [](SiteSet& set) { set.force_unit = 0.0; }),
+  };
 }
 
 // What sensors and hands do wrong, on a soft block that the features describe: the true force of another press decides.
@@ -302,82 +294,78 @@ Path at_one_speed(double speed_m_per_s) {
   };
 }
 
-struct RecordingCase {
-  const char* name;
-  void (*shape)(FaultyPress& press);
-};
-const RecordingCase kRecordingCases[] = {
-    {"recording, nothing wrong", [](FaultyPress&) {}},
-    {"forces near zero", [](FaultyPress& p) { p.move(0.02, 0.0); }},
-    {"all forces read zero", [](FaultyPress& p) { p.change([](std::size_t, double) { return 0.0; }); }},
-    {"one outlier of 100 N",
-     [](FaultyPress& p) {
-       p.fault = [](std::vector<RecordingRow>& rows) {
-         std::ranges::max_element(rows, {}, &RecordingRow::position_m)->force_N = 100.0;
-       };
-     }},
-    {"noise of a fifth",
-     [](FaultyPress& p) {
-       p.change([random = std::make_shared<RandomStream>(7, 4)](std::size_t, double f) {
-         return f * (1.0 + 0.2 * random->normal());
-       });
-     }},
-    {"noise 10 times the signal", [](FaultyPress& p) { p.sensors.force_noise_N = 10.0 * kLargest_N; }},
-    {"a force sensor that drifts",
-     [](FaultyPress& p) {
-       p.change([](std::size_t i, double f) {
-         return f + 0.2 * static_cast<double>(i) / (kRecordedSeconds * kRecordedRate_Hz);
-       });
-     }},
-    {"a saturated sensor", [](FaultyPress& p) { p.change([](std::size_t, double f) { return std::min(f, 1.0); }); }},
-    {"drop-outs of the force",
-     [](FaultyPress& p) { p.change([](std::size_t i, double f) { return i % 75 < 5 ? 0.0 : f; }); }},
-    {"quantised positions", [](FaultyPress& p) { p.sensors.encoder_step_m = 0.25e-3; }},
-    {"strokes that contradict",
-     [](FaultyPress& p) {
-       p.change([](std::size_t i, double f) {
-         return 2 * static_cast<double>(i) < kRecordedSeconds * kRecordedRate_Hz ? f : 1.3 * f;
-       });
-     }},
-    {"the force is late",
-     [](FaultyPress& p) {
-       p.fault = [](std::vector<RecordingRow>& rows) {
-         for (std::size_t i = rows.size(); i-- > 3;) rows[i].force_N = rows[i - 3].force_N;
-       };
-     }},
-    {"one constant speed", [](FaultyPress& p) { p.training = at_one_speed(0.02); }},
-    {"slow training, fast test",
-     [](FaultyPress& p) {
-       p.training = at_one_speed(0.001);
-       p.times_s = even_times(3.0 * kRecordedSeconds, kRecordedRate_Hz);
-       p.tested = [path = p.tested](double t) { return path(3.0 * t); };
-     }},
-    {"a shorter range than the test", [](FaultyPress& p) { p.training = scaled(p.training, 0.5, 0.0); }},
-    {"lost samples", [](FaultyPress& p) { p.times_s = times_without({}, 10); }},
-    {"gaps in time",
-     [](FaultyPress& p) {
-       p.times_s = times_without({{1.2, 1.45}, {2.6, 2.85}, {3.9, 4.4}}, 0);
-     }},
-    {"10 Hz", [](FaultyPress& p) { p.times_s = even_times(30.0, 10.0); }},
-    {"20 kHz", [](FaultyPress& p) { p.times_s = even_times(0.6, 20000.0); }},
-    {"jittered time stamps", [](FaultyPress& p) { p.times_s = jittered_times(); }},
-    {"never leaves the surface", [](FaultyPress& p) { p.move(0.4, 0.004); }},
-    {"never touches", [](FaultyPress& p) { p.move(1.0, -0.02); }},
-    {"the tool stands still", [](FaultyPress& p) { p.training = [](double) { return 0.003; }; }},
-};
+HardCase recording_case(const char* name, void (*shape)(FaultyPress& press)) {
+  return {name, "recording", [shape] {
+            FaultyPress presses;
+            shape(presses);
+            return build(presses);
+          }};
+}
 
 }  // namespace
 
 std::vector<HardCase> recording_cases() {
-  std::vector<HardCase> cases;
-  for (const RecordingCase& one : kRecordingCases) {
-    cases.push_back({one.name, HardKind::recording, [shape = one.shape] {
-                       FaultyPress presses;
-                       shape(presses);
-                       return build(presses);
-                     }});
-  }
-  return cases;
+  return {
+      recording_case("recording, nothing wrong", [](FaultyPress&) {}),
+      recording_case("forces near zero", [](FaultyPress& p) { p.move(0.02, 0.0); }),
+      recording_case("all forces read zero", [](FaultyPress& p) { p.change([](std::size_t, double) { return 0.0; }); }),
+      recording_case("one outlier of 100 N",
+                     [](FaultyPress& p) {
+                       p.fault = [](std::vector<RecordingRow>& rows) {
+                         std::ranges::max_element(rows, {}, &RecordingRow::position_m)->force_N = 100.0;
+                       };
+                     }),
+      recording_case("noise of a fifth",
+                     [](FaultyPress& p) {
+                       p.change([random = std::make_shared<RandomStream>(7, 4)](std::size_t, double f) {
+                         return f * (1.0 + 0.2 * random->normal());
+                       });
+                     }),
+      recording_case("noise 10 times the signal", [](FaultyPress& p) { p.sensors.force_noise_N = 10.0 * kLargest_N; }),
+      recording_case("a force sensor that drifts",
+                     [](FaultyPress& p) {
+                       p.change([](std::size_t i, double f) {
+                         return f + 0.2 * static_cast<double>(i) / (kRecordedSeconds * kRecordedRate_Hz);
+                       });
+                     }),
+      recording_case("a saturated sensor",
+                     [](FaultyPress& p) { p.change([](std::size_t, double f) { return std::min(f, 1.0); }); }),
+      recording_case("drop-outs of the force",
+                     [](FaultyPress& p) { p.change([](std::size_t i, double f) { return i % 75 < 5 ? 0.0 : f; }); }),
+      recording_case("quantised positions", [](FaultyPress& p) { p.sensors.encoder_step_m = 0.25e-3; }),
+      recording_case("strokes that contradict",
+                     [](FaultyPress& p) {
+                       p.change([](std::size_t i, double f) {
+                         return 2 * static_cast<double>(i) < kRecordedSeconds * kRecordedRate_Hz ? f : 1.3 * f;
+                       });
+                     }),
+      recording_case("the force is late",
+                     [](FaultyPress& p) {
+                       p.fault = [](std::vector<RecordingRow>& rows) {
+                         for (std::size_t i = rows.size(); i-- > 3;) rows[i].force_N = rows[i - 3].force_N;
+                       };
+                     }),
+      recording_case("one constant speed", [](FaultyPress& p) { p.training = at_one_speed(0.02); }),
+      recording_case("slow training, fast test",
+                     [](FaultyPress& p) {
+                       p.training = at_one_speed(0.001);
+                       p.times_s = even_times(3.0 * kRecordedSeconds, kRecordedRate_Hz);
+                       p.tested = [path = p.tested](double t) { return path(3.0 * t); };
+                     }),
+      recording_case("a shorter range than the test",
+                     [](FaultyPress& p) { p.training = scaled(p.training, 0.5, 0.0); }),
+      recording_case("lost samples", [](FaultyPress& p) { p.times_s = times_without({}, 10); }),
+      recording_case("gaps in time",
+                     [](FaultyPress& p) {
+                       p.times_s = times_without({{1.2, 1.45}, {2.6, 2.85}, {3.9, 4.4}}, 0);
+                     }),
+      recording_case("10 Hz", [](FaultyPress& p) { p.times_s = even_times(30.0, 10.0); }),
+      recording_case("20 kHz", [](FaultyPress& p) { p.times_s = even_times(0.6, 20000.0); }),
+      recording_case("jittered time stamps", [](FaultyPress& p) { p.times_s = jittered_times(); }),
+      recording_case("never leaves the surface", [](FaultyPress& p) { p.move(0.4, 0.004); }),
+      recording_case("never touches", [](FaultyPress& p) { p.move(1.0, -0.02); }),
+      recording_case("the tool stands still", [](FaultyPress& p) { p.training = [](double) { return 0.003; }; }),
+  };
 }
 
 // Motions unlike the training, and a hand in closed loop, on virtual materials with automatically selected features.
@@ -399,11 +387,8 @@ using Trainings = std::map<std::string, Training>;
 const Training& training_on(const std::string& material, Trainings& made) {
   Training& one = made[material];
   if (one.fits) return one;
-  RigSettings settings;
-  settings.material = material;
-  settings.seconds = kMaterialSeconds;
-  settings.rate_Hz = kMaterialRate_Hz;
-  Recording recording = std::move(*record_sensors(settings));
+  Recording recording =
+      std::move(*record_sensors({.material = material, .seconds = kMaterialSeconds, .rate_Hz = kMaterialRate_Hz}));
   one.depth_m = std::ranges::max_element(recording.rows, {}, &RecordingRow::position_m)->position_m;
   one.force_N = std::ranges::max_element(recording.rows, {}, &RecordingRow::force_N)->force_N;
   one.fits = train_on(std::move(recording));
@@ -447,7 +432,7 @@ void add_motions(std::vector<HardCase>& cases, const std::shared_ptr<Trainings>&
   for (const std::string material : {"maxwell", "friction", "sponge", "layered"}) {
     for (const Motion& motion : kMotions) {
       cases.push_back(
-          {material + ": " + motion.name, HardKind::motion, [=] {
+          {material + ": " + motion.name, "motion", [=] {
              const Training& one = training_on(material, *trainings);
              const auto block = find_material(material)->make_block();
              const auto press = std::make_shared<const Press>(
@@ -462,7 +447,7 @@ constexpr double kPress = 0.3;  // of the largest force of the training
 
 HardCase hand_case(const std::shared_ptr<Trainings>& trainings, const std::string& material, const std::string& name,
                    const HandTrial& trial) {
-  return {material + ": " + name, HardKind::loop, [=] {
+  return {material + ": " + name, "loop", [=] {
             const Training& one = training_on(material, *trainings);
             HandTrial at = trial;
             at.depth_m = std::sqrt(kPress) * one.depth_m;

@@ -10,7 +10,6 @@
 #include "engine/live/pacer.h"
 #include "models/correction/methods.h"
 #include "scenes/evaluation/model_errors.h"
-#include "scenes/report/publish.h"
 #include "scenes/scene/scene.h"
 
 namespace palpate {
@@ -23,6 +22,14 @@ constexpr int kMostControlSites = 1000;
 // Below every singular value of a matrix of doubles: nothing is truncated.
 constexpr double kNoTruncation = 1e-300;
 
+// "error, step"
+std::string breaks_text(unsigned breaks) {
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < std::size(kHardBreaks); ++i)
+    if ((breaks & 1U << i) != 0) names.emplace_back(kHardBreaks[i]);
+  return joined(names);
+}
+
 unsigned breaks_named(const std::string& names) {
   unsigned breaks = 0;
   for (std::size_t i = 0; i < std::size(kHardBreaks); ++i)
@@ -30,23 +37,7 @@ unsigned breaks_named(const std::string& names) {
   return breaks;
 }
 
-}  // namespace
-
-unsigned HardFigures::breaks(bool error_counts) const {
-  return (error_counts && within_jnd < kWithin ? kBreaksError : 0U) | (step_over_N > 0.0 ? kBreaksStep : 0U) |
-         (energy_J > kHardEncoder_m * largest_N ? kBreaksEnergy : 0U);
-}
-
-std::vector<HardMethod> hard_methods() {
-  std::vector<HardMethod> list;
-  for (const ModelPlan& plan : all_plans()) {
-    if (plan.base == Base::force || plan.method == &kTrendMethod || plan.method == ModelPlan{}.method)
-      list.push_back({plan_name(plan), plan});
-  }
-  list.push_back({kControlName, {.base = Base::force, .method = &kRandomMethod, .centres = kMostControlSites}, true});
-  return list;
-}
-
+// All cases. Errors: the file cannot be read, is no JSON or lacks a case.
 Result<std::vector<HardCase>> hard_cases() {
   const auto assets = find_assets();
   if (!assets) return assets.error();
@@ -72,92 +63,6 @@ Result<std::vector<HardCase>> hard_cases() {
   return cases;
 }
 
-Result<MethodFit> HardTraining::untruncated(const FitControl& control) {
-  ModelPlan plan = common_;
-  plan.base = Base::force;
-  plan.method = &kRandomMethod;
-  plan.centres = kMostControlSites;
-  const auto prepared = fits_.prepare(plan, control);
-  if (!prepared) return prepared.error();
-  // With every distinct site as a centre the least squares problem of eq. 8 is the interpolation of eq. 4.
-  const OpenChoices choices{.truncation = kNoTruncation};
-  return fit_method(**prepared, plan, control, nullptr, &choices);
-}
-
-const Result<MethodFit>& HardTraining::fit(const HardMethod& method, const FitControl& control) {
-  if (const auto made = made_.find(method.name); made != made_.end()) return made->second;
-  ModelPlan asked = common_;
-  asked.base = method.plan.base;
-  asked.method = method.plan.method;
-  const double start_s = steady_now_s();
-  auto fit = method.untruncated ? untruncated(control) : fits_.fit(asked, control);
-  if (fit) fit->seconds = steady_now_s() - start_s;
-  return made_.emplace(method.name, std::move(fit)).first->second;
-}
-
-std::string missed_by(const HardCell& cell, const HardCase& of, const std::string& method) {
-  if (!of.refusal.empty()) {
-    if (cell.refusal.empty()) return "fitted, expected a refusal";
-    return cell.refusal.find(of.refusal) != std::string::npos
-               ? ""
-               : "refused with another reason, expected \"" + of.refusal + "\"";
-  }
-  if (!cell.refusal.empty()) return "refused, expected a fit";
-  if (std::isinf(cell.figures.worst_step_N)) return "a force that is not finite";
-  const auto recorded = of.breaks.find(method);
-  std::string text;
-  for (std::size_t i = 0; recorded != of.breaks.end() && i < std::size(kHardBreaks); ++i)
-    if ((cell.breaks & ~recorded->second & 1U << i) != 0)
-      text += (text.empty() ? "breaks " : ", ") + std::string(kHardBreaks[i]);
-  return text;
-}
-
-void HardMeasure::add(double force_N, double true_N, bool counts, double position_m) {
-  if (std::isfinite(last_m_)) {
-    // The trapezoidal rule. A force that pushes the tool out (towards smaller positions) gives out energy.
-    const double way_m = position_m - last_m_;
-    given_J_ -= 0.5 * (force_N + last_N_) * way_m;
-    truly_given_J_ -= 0.5 * (true_N + last_true_N_) * way_m;
-    energy_J_ = std::max(energy_J_, given_J_ - std::max(0.0, truly_given_J_));
-  }
-  const double jnd_N = JndLine{}.at(true_N);
-  // A force that is not finite is never within the JND, and an infinite error.
-  const double error_N = std::isfinite(force_N) ? std::abs(force_N - true_N) : kEndless;
-  if (counts) {
-    ++counted_;
-    if (error_N <= jnd_N) ++within_;
-    worst_N_ = std::max(worst_N_, error_N);
-  }
-  if (ticks_ > 0) {
-    const double change_N = std::abs(force_N - last_N_), step_N = std::isfinite(change_N) ? change_N : kEndless;
-    step_N_ = std::max(step_N_, step_N);
-    beyond_jnd_N_ = std::max(beyond_jnd_N_, step_N - jnd_N);
-    true_step_N_ = std::max(true_step_N_, std::abs(true_N - last_true_N_));
-  }
-  largest_N_ = std::max(largest_N_, std::abs(true_N));
-  last_m_ = position_m;
-  last_true_N_ = true_N;
-  last_N_ = force_N;
-  ++ticks_;
-}
-
-HardFigures HardMeasure::figures() const {
-  HardFigures figures;
-  figures.largest_N = largest_N_;
-  if (counted_ > 0) {
-    figures.within_jnd = static_cast<double>(within_) / static_cast<double>(counted_);
-    figures.worst_error_N = worst_N_;
-  }
-  if (ticks_ > 1) {
-    figures.worst_step_N = step_N_;
-    figures.step_over_N = beyond_jnd_N_ - true_step_N_;
-  }
-  if (std::isfinite(last_m_)) figures.energy_J = energy_J_;
-  return figures;
-}
-
-namespace {
-
 // The numbers of a cell. JSON has null for those that do not apply.
 double known(double value, bool applies) { return applies ? value : kNoNumber; }
 
@@ -182,14 +87,6 @@ Result<HardRow> run_case(HardCase one, const FitControl& control) {
   return row;
 }
 
-// "error, step"
-std::string breaks_text(unsigned breaks) {
-  std::vector<std::string> names;
-  for (std::size_t i = 0; i < std::size(kHardBreaks); ++i)
-    if ((breaks & 1U << i) != 0) names.emplace_back(kHardBreaks[i]);
-  return joined(names);
-}
-
 // One row for each cell, with every figure.
 Table cells_table(const std::vector<HardRow>& rows) {
   Table table{"cells", true};
@@ -199,7 +96,7 @@ Table cells_table(const std::vector<HardRow>& rows) {
       const HardCell& cell = row.cells[k];
       table.begin_row();
       table.add({"case", "case"}, row.of.name);
-      table.add({"kind", ""}, kHardKinds[static_cast<std::size_t>(row.of.kind)]);
+      table.add({"kind", ""}, row.of.kind);
       table.add({"method", "method"}, methods[k].name);
       table.add({"status", "status"}, cell.refusal.empty() ? "fitted" : "refused");
       table.add({"reason", "reason"}, cell.refusal);
@@ -237,6 +134,87 @@ std::string below_text(const HardCell& cell) {
 }
 
 }  // namespace
+
+unsigned HardFigures::breaks(bool error_counts) const {
+  return (error_counts && within_jnd < kWithin ? kBreaksError : 0U) | (step_over_N > 0.0 ? kBreaksStep : 0U) |
+         (energy_J > kHardEncoder_m * largest_N ? kBreaksEnergy : 0U);
+}
+
+std::vector<HardMethod> hard_methods() {
+  std::vector<HardMethod> list;
+  for (const ModelPlan& plan : all_plans()) {
+    if (plan.base == Base::force || plan.method == &kTrendMethod || plan.method == ModelPlan{}.method)
+      list.push_back({plan_name(plan), plan});
+  }
+  list.push_back({kControlName, {.base = Base::force, .method = &kRandomMethod, .centres = kMostControlSites}, true});
+  return list;
+}
+
+Result<MethodFit> HardTraining::untruncated(const ModelPlan& plan, const FitControl& control) {
+  const auto prepared = fits_.prepare(plan, control);
+  if (!prepared) return prepared.error();
+  // With every distinct site as a centre the least squares problem of eq. 8 is the interpolation of eq. 4.
+  const OpenChoices choices{.truncation = kNoTruncation};
+  return fit_method(**prepared, plan, control, nullptr, &choices);
+}
+
+const Result<MethodFit>& HardTraining::fit(const HardMethod& method, const FitControl& control) {
+  if (const auto made = made_.find(method.name); made != made_.end()) return made->second;
+  ModelPlan asked = common_;
+  asked.base = method.plan.base;
+  asked.method = method.plan.method;
+  asked.centres = method.plan.centres;
+  const double start_s = steady_now_s();
+  auto fit = method.untruncated ? untruncated(asked, control) : fits_.fit(asked, control);
+  if (fit) fit->seconds = steady_now_s() - start_s;
+  return made_.emplace(method.name, std::move(fit)).first->second;
+}
+
+std::string missed_by(const HardCell& cell, const HardCase& of, const std::string& method) {
+  if (!of.refusal.empty()) {
+    if (cell.refusal.empty()) return "fitted, expected a refusal";
+    return cell.refusal.find(of.refusal) != std::string::npos
+               ? ""
+               : "refused with another reason, expected \"" + of.refusal + "\"";
+  }
+  if (!cell.refusal.empty()) return "refused, expected a fit";
+  if (std::isinf(cell.figures.worst_step_N)) return "a force that is not finite";
+  const auto recorded = of.breaks.find(method);
+  const unsigned unexpected = recorded != of.breaks.end() ? cell.breaks & ~recorded->second : 0U;
+  return unexpected != 0 ? "breaks " + breaks_text(unexpected) : "";
+}
+
+void HardMeasure::add(double force_N, double true_N, bool counts, double position_m) {
+  if (std::isfinite(last_m_)) {
+    // The trapezoidal rule. A force that pushes the tool out (towards smaller positions) gives out energy.
+    const double way_m = position_m - last_m_;
+    given_J_ -= 0.5 * (force_N + last_N_) * way_m;
+    truly_given_J_ -= 0.5 * (true_N + last_true_N_) * way_m;
+    figures_.energy_J = std::fmax(figures_.energy_J, given_J_ - std::max(0.0, truly_given_J_));
+  } else if (std::isfinite(position_m)) {
+    figures_.energy_J = 0.0;
+  }
+  const double jnd_N = JndLine{}.at(true_N);
+  // A force that is not finite is never within the JND, and an infinite error.
+  const double error_N = std::isfinite(force_N) ? std::abs(force_N - true_N) : kEndless;
+  if (counts) {
+    within_ += error_N <= jnd_N ? 1 : 0;
+    figures_.within_jnd = static_cast<double>(within_) / static_cast<double>(++counted_);
+    figures_.worst_error_N = std::fmax(figures_.worst_error_N, error_N);
+  }
+  if (ticks_ > 0) {
+    const double change_N = std::abs(force_N - last_N_), step_N = std::isfinite(change_N) ? change_N : kEndless;
+    figures_.worst_step_N = std::fmax(figures_.worst_step_N, step_N);
+    beyond_jnd_N_ = std::max(beyond_jnd_N_, step_N - jnd_N);
+    true_step_N_ = std::max(true_step_N_, std::abs(true_N - last_true_N_));
+    figures_.step_over_N = beyond_jnd_N_ - true_step_N_;
+  }
+  figures_.largest_N = std::max(figures_.largest_N, std::abs(true_N));
+  last_m_ = position_m;
+  last_true_N_ = true_N;
+  last_N_ = force_N;
+  ++ticks_;
+}
 
 Result<std::vector<HardRow>> run_hard(const FitControl& control) {
   auto cases = hard_cases();
@@ -285,11 +263,11 @@ std::string hard_answer(const std::vector<HardRow>& rows) {
          (missed == 0 ? "each of them known" : std::to_string(missed) + " not as expected") + ".";
 }
 
-Table marks_table(const std::vector<HardRow>& rows, std::optional<HardKind> kind) {
-  Table table{kind ? kHardKinds[static_cast<std::size_t>(*kind)] : "cases"};
+Table marks_table(const std::vector<HardRow>& rows, const std::string& kind) {
+  Table table{kind.empty() ? "cases" : kind};
   const std::vector<HardMethod> methods = hard_methods();
   for (const HardRow& row : rows) {
-    if (kind && row.of.kind != *kind) continue;
+    if (!kind.empty() && row.of.kind != kind) continue;
     table.begin_row();
     table.add({"case", "case", 1.0, TableColumn::kThreeDigits, 1}, row.of.name);
     table.add({"why", ""}, row.of.why + (row.of.unknown.empty() ? "" : "; not known: " + row.of.unknown) +
@@ -310,8 +288,7 @@ Status write_hard_page(const std::vector<HardRow>& rows, const PageRequest& page
   auto folder = ReportFolder::create(page.out, page.force);
   if (!folder) return folder.error();
   std::vector<Table> tables;
-  for (std::size_t kind = 0; kind < std::size(kHardKinds); ++kind)
-    tables.push_back(marks_table(rows, static_cast<HardKind>(kind)));
+  for (const char* kind : kHardKinds) tables.push_back(marks_table(rows, kind));
   tables.push_back(cells_table(rows));
   const std::vector<std::string> missed = missed_cells(rows);
   nlohmann::ordered_json report{{"format", "palpate-hard"}, {"version", 1}, {"answer", hard_answer(rows)}};

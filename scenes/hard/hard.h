@@ -18,7 +18,6 @@
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -31,8 +30,7 @@
 
 namespace palpate {
 
-enum class HardKind : std::uint8_t { sites, recording, motion, loop };
-inline constexpr const char* kHardKinds[] = {"sites", "recording", "motion", "loop"};  // their names
+inline constexpr const char* kHardKinds[] = {"sites", "recording", "motion", "loop"};
 
 inline constexpr double kWithin = 0.99;
 inline constexpr double kHardEncoder_m = 10e-6;  // of the device; a press of exact positions is judged with it, too
@@ -77,7 +75,7 @@ class HardTraining {
   const Result<MethodFit>& fit(const HardMethod& method, const FitControl& control);
 
  private:
-  Result<MethodFit> untruncated(const FitControl& control);
+  Result<MethodFit> untruncated(const ModelPlan& plan, const FitControl& control);
 
   ModelFits fits_;
   ModelPlan common_;
@@ -92,8 +90,8 @@ struct HardTrial {
 
 struct HardCase {
   std::string name;
-  HardKind kind = HardKind::sites;
-  std::function<HardTrial()> build;
+  std::string kind{};  // of kHardKinds
+  std::function<HardTrial()> build{};
   // From assets/hard/cases.json:
   std::string why{};      // what is hard
   std::string unknown{};  // the physical reason why the force cannot be known; empty: the error counts
@@ -106,13 +104,14 @@ class HardMeasure {
  public:
   // `counts`: the tick is in contact. `position_m`: of the tool, for the energy; NaN: the energy does not count.
   void add(double force_N, double true_N, bool counts, double position_m = HardFigures::kNotMeasured);
-  HardFigures figures() const;
+  const HardFigures& figures() const { return figures_; }
 
  private:
+  HardFigures figures_;
   std::size_t ticks_ = 0, counted_ = 0, within_ = 0;
-  double worst_N_ = 0.0, step_N_ = 0.0, beyond_jnd_N_ = 0.0, true_step_N_ = 0.0, last_N_ = 0.0, largest_N_ = 0.0;
-  double last_m_ = HardFigures::kNotMeasured, last_true_N_ = 0.0;
-  double given_J_ = 0.0, truly_given_J_ = 0.0, energy_J_ = 0.0;
+  double beyond_jnd_N_ = 0.0, true_step_N_ = 0.0;  // largest step less the JND, largest step of the true force
+  double last_m_ = HardFigures::kNotMeasured, last_N_ = 0.0, last_true_N_ = 0.0;
+  double given_J_ = 0.0, truly_given_J_ = 0.0;
 };
 
 // The cases of each kind, in the order of the table, without what the file says. Motions and hands share the fits to
@@ -120,8 +119,6 @@ class HardMeasure {
 std::vector<HardCase> site_cases();
 std::vector<HardCase> recording_cases();
 std::vector<HardCase> material_cases();
-// All cases. Errors: the file cannot be read, is no JSON or lacks a case.
-Result<std::vector<HardCase>> hard_cases();
 
 struct HardCell {
   MethodFit fit{};        // without a model: refused
@@ -147,9 +144,9 @@ std::vector<std::string> missed_cells(const std::vector<HardRow>& rows);
 std::string hard_answer(const std::vector<HardRow>& rows);
 // One object for each cell, with every figure.
 nlohmann::ordered_json hard_json(const std::vector<HardRow>& rows);
-// A row for each case, of one kind or of all, and a column for each method: "✓ 99.8" or "✗ 45.1" is whether the cell is
-// broken, and the percentage within the JND, or "refused"; with "!" where it is not as expected.
-Table marks_table(const std::vector<HardRow>& rows, std::optional<HardKind> kind = {});
+// A row for each case, of one kind or (empty) of all, and a column for each method: "✓ 99.8" or "✗ 45.1" is whether the
+// cell is broken, and the percentage within the JND, or "refused"; with "!" where it is not as expected.
+Table marks_table(const std::vector<HardRow>& rows, const std::string& kind = "");
 
 // Writes the page, its tables and report.json into the folder `out`. Errors: those of ReportFolder and write_report.
 Status write_hard_page(const std::vector<HardRow>& rows, const PageRequest& page, const FitControl& control = {});
@@ -282,10 +279,7 @@ class ClosedLoop {
 // Minimum jerk from `from_m` to `to_m` within `duration_s`, then held.
 ClosedLoop::Drive minimum_jerk(double from_m, double to_m, double duration_s, double time_s);
 
-// Trials: a press along a path, for motions that the simulated hand of the rig does not make, and a hand in closed
-// loop.
-
-// The position of the tool, m, as a function of time, s.
+// The position of the tool, m, as a function of time, s: a path for motions that the hand of the rig does not make.
 using Path = std::function<double(double time_s)>;
 
 inline constexpr double kInAir_m = -2e-3;

@@ -1,16 +1,12 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <utility>
-#include <vector>
 
-#include "engine/base/random_stream.h"
 #include "engine/tick/haptics_tick.h"
 #include "scenes/hard/hard.h"
 
 namespace palpate {
 constexpr double kPress_s = 0.3, kPulse_s = 0.6, kStill_s = 1.0, kReturn_s = 1.5, kEnd_s = 2.2;
-constexpr double kTick_s = 1e-3;
 constexpr double kHalfSpan_s = 50e-6;  // half the span of a central difference of a path
 
 Path training_path(int variant) {
@@ -99,7 +95,7 @@ HardFigures measure_hand(const HandTrial& trial, Block& block, const std::shared
   loop.run(kEnd_s, path, [&](const LoopSnapshot& snapshot) {
     const SimulatedTool& tool = loop.tool();
     const double now_s = snapshot.loop_time_s;
-    const double true_N = block.step(tool.position_m(), tool.velocity_m_per_s(), kTick_s);
+    const double true_N = block.step(tool.position_m(), tool.velocity_m_per_s(), kHapticTick_s);
     measured.add(snapshot.rendered_N, true_N, snapshot.tick.in_contact && now_s > kPress_s);
     const double balance_J = tool.energy().balance_J();
     given_J = std::max(given_J, -balance_J);
@@ -141,12 +137,7 @@ bool SimulatedTool::read(double now_s, DeviceSample& sample) noexcept {
   return true;
 }
 
-DeviceHealth SimulatedTool::health(double) noexcept {
-  DeviceHealth health;
-  health.sample_age_s = 0.0;
-  health.interval_s = settings_.sample_s;
-  return health;
-}
+DeviceHealth SimulatedTool::health(double) noexcept { return {.sample_age_s = 0.0, .interval_s = settings_.sample_s}; }
 
 void SimulatedTool::write(double force_N) noexcept {
   if (count_ == written_.size()) return;  // a delay of 10 ms fills less than half
