@@ -1,12 +1,10 @@
 // palpate study: analyses the files of subjects in the force-discrimination study, or simulates subjects.
 #include <cstdio>
 #include <filesystem>
-#include <memory>
 #include <optional>
-#include <string>
-#include <vector>
 
 #include "engine/base/files.h"
+#include "engine/base/random_stream.h"
 #include "models/fit/fit.h"
 #include "scenes/cli/verbs.h"
 #include "scenes/study/study_analysis.h"

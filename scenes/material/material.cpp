@@ -1,9 +1,8 @@
-#include "scenes/material/material.h"
 
-#include <algorithm>
-#include <cmath>
 #include <string>
 #include <vector>
+
+#include "scenes/material/material.h"
 
 #include "engine/base/text.h"
 #include "scenes/material/material_laws.h"

@@ -255,7 +255,6 @@ class HereditaryBlock : public Block {
 // On the way in new bristles are unbent and do not change F_c(s) z; on the way out bristles
 // leave with their share of the force. Friction that holds the probe back does not exceed the
 // force that pushes it out, so that the block does not grip it. A free surface has no friction.
-// F_c = 0.35 N, x_p = 0.1 mm, d_c = 4 mm; sphere of 10 mm radius, 12 kPa; K is a box spectrum from 50 ms to 2 s.
 // Passive: at most V = F_c(s) x_p z^2 / 2 is stored, and F_c z ds - dV >= z^2 F_c |ds| on the
 // way in, more on the way out.
 // Source: Dahl (1968); Canudas de Wit, Olsson, Astrom & Lischinsky (1995)
@@ -474,7 +473,6 @@ class ButtonBlock final : public Block {
 // The drainage has a series of relaxation times a^2 / (k M j_n^2) with the zeros j_n of J0 (2.405, 5.52, ...), which
 // are twelve times longer at a strain of 0.5. The pressure is integrated by finite volumes in 12 rings with implicit
 // Euler, with k(e) of the beginning of the sub-step.
-// L = 30 mm, a = 12 mm; E = 9 kPa, e_d = 0.8; M = 160 kPa; longest time 0.2 s when uncompressed; b = 5.
 // Passive: A L (integral of sigma de + mean p^2 / (2 M)) is stored, drainage dissipates, and so does implicit Euler.
 // Source: Biot (1941); Mow, Kuei, Lai & Armstrong (1980) (biphasic theory); Armstrong, Lai & Mow (1984) (radial
 // drainage under a plate); Lai & Mow (1980) (permeability and strain); Gibson & Ashby (1997) (densification).

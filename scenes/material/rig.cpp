@@ -28,13 +28,10 @@ enum Stream : std::uint64_t { kForceStream = 1, kAccelerationStream, kBiasStream
 RigTruth between(const RigTruth& a, const RigTruth& b, double u) {
   const double rest = 1.0 - u;
   const auto straight = [&](double from, double to) { return from + (to - from) * u; };
-  RigTruth truth;
-  truth.position_m = a.position_m + (b.position_m - a.position_m) * u * u * (3.0 - 2.0 * u) +
-                     kRigStep_s * u * rest * (a.velocity_m_per_s * rest - b.velocity_m_per_s * u);
-  truth.velocity_m_per_s = straight(a.velocity_m_per_s, b.velocity_m_per_s);
-  truth.acceleration_m_per_s2 = straight(a.acceleration_m_per_s2, b.acceleration_m_per_s2);
-  truth.force_N = straight(a.force_N, b.force_N);
-  return truth;
+  return {a.position_m + (b.position_m - a.position_m) * u * u * (3.0 - 2.0 * u) +
+              kRigStep_s * u * rest * (a.velocity_m_per_s * rest - b.velocity_m_per_s * u),
+          straight(a.velocity_m_per_s, b.velocity_m_per_s), straight(a.acceleration_m_per_s2, b.acceleration_m_per_s2),
+          straight(a.force_N, b.force_N)};
 }
 
 // Quantises and clips a value like a 12-bit converter with the range -range .. +range. The + 0.0 here and below turns
@@ -77,8 +74,7 @@ Result<Rig> Rig::create(const RigSettings& settings) {
 Rig::Rig(const RigSettings& settings, const Material& material, std::size_t row_count)
     : rate_Hz_(settings.rate_Hz),
       force_range_N_(material.force_range_N),
-      hand_(material, settings.hand.value_or(HandSettings{.strongest_press_N = material.strongest_press_N}),
-            settings.seed),
+      hand_(material, HandSettings{.strongest_press_N = material.strongest_press_N}, settings.seed),
       block_(material.make_block()),
       force_noise_(settings.seed, kForceStream),
       acceleration_noise_(settings.seed, kAccelerationStream),

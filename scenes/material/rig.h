@@ -13,7 +13,6 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -41,9 +40,8 @@ class Hand final : public HandMotion {
 struct RigSettings {
   std::string material = "silicone";
   std::uint64_t seed = 1;
-  double seconds = 0.0;                // 0: the material's default
-  double rate_Hz = 1000.0;             // 10 .. 20,000
-  std::optional<HandSettings> hand{};  // empty: the material's default
+  double seconds = 0.0;     // 0: the material's default
+  double rate_Hz = 1000.0;  // 10 .. 20,000
 };
 
 // The true motion and force at the time of one row.

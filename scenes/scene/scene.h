@@ -19,7 +19,6 @@ namespace palpate {
 // tried in this order: `../share/palpate` (an installed program) and `../assets` (a build folder), relative to the
 // folder of the executable; the source tree.
 // Source of the user's folders: XDG Base Directory Specification 0.8.
-// Thread guarantee: slow side only (does I/O); reads the environment.
 
 // Errors: none of these folders has a subfolder `scenes`; the message lists the folders.
 Result<std::string> find_assets();

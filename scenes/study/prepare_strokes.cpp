@@ -134,9 +134,8 @@ Result<Recording> test_recording(const Scene& scene, const std::string& recordin
 
 }  // namespace
 
-Result<std::shared_ptr<const StrokePair>> prepare_strokes(const std::string& scene,
-                                                          const std::vector<std::string>& models,
-                                                          const std::string& recording) {
+Result<StrokesPointer> prepare_strokes(const std::string& scene, const std::vector<std::string>& models,
+                                       const std::string& recording) {
   const Result<Scene> loaded = load_scene(scene);
   if (!loaded) return loaded.error();
   if (models.size() > 2) {
@@ -158,8 +157,8 @@ Result<std::shared_ptr<const StrokePair>> prepare_strokes(const std::string& sce
   return strokes_of(*rendered, made.size() == 2 ? made.front() : nullptr, made.back(), loaded->jnd);
 }
 
-Result<std::shared_ptr<const StrokePair>> strokes_of(const Recording& recording, const Model& reference,
-                                                     const Model& comparison, const JndLine& jnd) {
+Result<StrokesPointer> strokes_of(const Recording& recording, const Model& reference, const Model& comparison,
+                                  const JndLine& jnd) {
   Traces traces = resampled(forces_of(recording, reference, comparison));
   smooth(traces, &Trace::reference_N);
   smooth(traces, &Trace::comparison_N);
@@ -186,7 +185,7 @@ Result<std::shared_ptr<const StrokePair>> strokes_of(const Recording& recording,
   strokes->reference_mean_N = mean_of(strokes->reference_N);
   strokes->comparison_mean_N = mean_of(strokes->comparison_N);
   strokes->checksum = content_hash(hashed);
-  return std::shared_ptr<const StrokePair>(std::move(strokes));
+  return StrokesPointer(std::move(strokes));
 }
 
 }  // namespace palpate

@@ -7,11 +7,11 @@
 #include <numbers>
 #include <utility>
 
+#include "engine/base/random_stream.h"
 #include "engine/base/text.h"
 #include "scenes/evaluation/model_errors.h"
 
 namespace palpate {
-
 namespace {
 
 constexpr double kFlattestSlope = 0.25;
@@ -42,6 +42,9 @@ double maximum_between(double low, double high, const Function& function) {
   }
   return 0.5 * (low + high);
 }
+
+// Phi.
+double normal_cdf(double z) noexcept { return 0.5 * std::erfc(-z / std::numbers::sqrt2); }
 
 double log_likelihood(const Cells& cells, const PsychometricFunction& function) {
   double sum = 0.0;
@@ -130,9 +133,49 @@ std::string row(const std::string& subject, const ReferenceJnd& one) {
   return text;
 }
 
-}  // namespace
+constexpr std::uint64_t kStream = 31;
 
-double normal_cdf(double z) noexcept { return 0.5 * std::erfc(-z / std::numbers::sqrt2); }
+Discrimination discrimination_of(const std::string& subject, const std::vector<StudyRecord>& records,
+                                 const StrokePair& strokes) {
+  Discrimination result{subject};
+  for (const StudyRecord& record : records) {
+    if (record.trial.training) continue;
+    const bool usable = record.rendered && record.worst_N <= 0.5 * strokes.jnd.at(0.0);
+    ++(usable ? result.trials : result.unusable);
+    if (usable && record.found_reference()) ++result.correct;
+  }
+  return result;
+}
+
+// Whether the second of two forces is perceived as the larger. Draws the same number of random numbers for every trial,
+// so that an answer does not change later trials.
+bool second_feels_larger(const SubjectTraits& traits, double first_N, double second_N, RandomStream& random) noexcept {
+  const double noise_per_jnd = 1.0 / (kCriterionQuantile * std::sqrt(2.0));
+  const auto perceived_N = [&](double force_N) {
+    return force_N + noise_per_jnd * traits.jnd.at(force_N) * random.normal();
+  };
+  const bool missed = random.uniform(0.0, 1.0) < 2.0 * traits.lapse_rate;
+  const bool guess = random.uniform(0.0, 1.0) < 0.5;
+  const double first_perceived_N = perceived_N(first_N), second_perceived_N = perceived_N(second_N);
+  const double bias_N = traits.order_bias_jnd * traits.jnd.at(0.5 * (first_N + second_N));
+  return missed ? guess : second_perceived_N + bias_N > first_perceived_N;
+}
+
+// Whether the answer is "second": the larger of two forces, or the stroke that equals the reminder.
+bool answers_second(const SubjectTraits& traits, const Stimuli& stimuli, RandomStream& random) {
+  const Stimulus &reminder = stimuli[0], &first = stimuli[1], &second = stimuli[2];
+  if (!has_reminder(stimuli)) return second_feels_larger(traits, first.size, second.size, random);
+  const auto difference = [&](std::uint32_t tick) {
+    return std::abs(first.force_N(tick) - second.force_N(tick)) / traits.jnd.at(reminder.force_N(tick));
+  };
+  std::uint32_t most = 0;
+  for (std::uint32_t tick = 1; tick < kInterval_ticks; ++tick)
+    if (difference(tick) > difference(most)) most = tick;
+  const double first_N = first.force_N(most), second_N = second.force_N(most);
+  return second_feels_larger(traits, first_N, second_N, random) == (2.0 * reminder.force_N(most) > first_N + second_N);
+}
+
+}  // namespace
 
 double PsychometricFunction::at(double difference, bool comparison_first) const noexcept {
   return lapse + (1.0 - 2.0 * lapse) * normal_cdf(slope * difference + (comparison_first ? -order_bias : order_bias));
@@ -246,18 +289,6 @@ CorrectShare correct_share(const Discrimination& result) noexcept {
   return {share, std::max(0.0, middle - half), std::min(1.0, middle + half)};
 }
 
-Discrimination discrimination_of(const std::string& subject, const std::vector<StudyRecord>& records,
-                                 const StrokePair& strokes) {
-  Discrimination result{subject};
-  for (const StudyRecord& record : records) {
-    if (record.trial.training) continue;
-    const bool usable = record.rendered && record.worst_N <= 0.5 * strokes.jnd.at(0.0);
-    ++(usable ? result.trials : result.unusable);
-    if (usable && record.found_reference()) ++result.correct;
-  }
-  return result;
-}
-
 std::string discrimination_verdict(const Discrimination& result, const StrokePair& strokes) {
   const std::string most = fixed(strokes.max_over_jnd, 2), mean = fixed(strokes.mean_over_jnd, 2);
   const bool below = strokes.max_over_jnd <= 1.0, above = strokes.mean_over_jnd > 1.0;
@@ -304,38 +335,6 @@ std::string discrimination_table(const std::vector<Discrimination>& results, con
     table += text;
   }
   return table;
-}
-
-namespace {
-
-constexpr std::uint64_t kStream = 31;
-
-// Whether the answer is "second": the larger of two forces, or the stroke that equals the reminder.
-bool answers_second(const SubjectTraits& traits, const Stimuli& stimuli, RandomStream& random) {
-  const Stimulus &reminder = stimuli[0], &first = stimuli[1], &second = stimuli[2];
-  if (!has_reminder(stimuli)) return second_feels_larger(traits, first.size, second.size, random);
-  const auto difference = [&](std::uint32_t tick) {
-    return std::abs(first.force_N(tick) - second.force_N(tick)) / traits.jnd.at(reminder.force_N(tick));
-  };
-  std::uint32_t most = 0;
-  for (std::uint32_t tick = 1; tick < kInterval_ticks; ++tick)
-    if (difference(tick) > difference(most)) most = tick;
-  const double first_N = first.force_N(most), second_N = second.force_N(most);
-  return second_feels_larger(traits, first_N, second_N, random) == (2.0 * reminder.force_N(most) > first_N + second_N);
-}
-
-}  // namespace
-
-bool second_feels_larger(const SubjectTraits& traits, double first_N, double second_N, RandomStream& random) noexcept {
-  const double noise_per_jnd = 1.0 / (kCriterionQuantile * std::sqrt(2.0));
-  const auto perceived_N = [&](double force_N) {
-    return force_N + noise_per_jnd * traits.jnd.at(force_N) * random.normal();
-  };
-  const bool missed = random.uniform(0.0, 1.0) < 2.0 * traits.lapse_rate;
-  const bool guess = random.uniform(0.0, 1.0) < 0.5;
-  const double first_perceived_N = perceived_N(first_N), second_perceived_N = perceived_N(second_N);
-  const double bias_N = traits.order_bias_jnd * traits.jnd.at(0.5 * (first_N + second_N));
-  return missed ? guess : second_perceived_N + bias_N > first_perceived_N;
 }
 
 std::vector<StudyRecord> simulated_answers(const StudyHeader& header, const SubjectTraits& traits, std::uint64_t seed) {

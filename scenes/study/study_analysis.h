@@ -20,7 +20,6 @@
 #include <string>
 #include <vector>
 
-#include "engine/base/random_stream.h"
 #include "engine/base/result.h"
 #include "engine/tick/jnd.h"
 #include "scenes/study/study_file.h"
@@ -29,9 +28,6 @@ namespace palpate {
 
 inline constexpr double kJndCriterion = 0.75;
 inline constexpr double kCriterionQuantile = 0.6744897501960817;  // Phi^-1(kJndCriterion)
-
-// Phi.
-double normal_cdf(double z) noexcept;
 
 // With x = (comparison - reference) / reference and o = +1 when the comparison came second, -1 when it came first, the
 // comparison is judged the larger with probability
@@ -136,9 +132,6 @@ struct CorrectShare {
 };
 CorrectShare correct_share(const Discrimination& result) noexcept;
 
-Discrimination discrimination_of(const std::string& subject, const std::vector<StudyRecord>& records,
-                                 const StrokePair& strokes);
-
 // Prediction, result and their agreement in words, e.g.
 // "Predicted below the JND (at most 0.71 of it). 52 % right [42 to 62], as by guessing;
 // 75 % would be one JND: consistent."
@@ -160,7 +153,6 @@ std::string discrimination_table(const std::vector<Discrimination>& results, con
 //   Phi(|F1 - F2| / sqrt(s(F1)^2 + s(F2)^2)),
 // 75 % for one JND, the optimum for an observer with this noise who attends to one tick.
 // Deterministic: the same seed gives the same answers.
-// Thread guarantee: one thread; slow side.
 
 struct SubjectTraits {
   JndLine jnd;
@@ -170,10 +162,6 @@ struct SubjectTraits {
 
 // A subject with the paper's JND at 2.5 N, 13.3 %.
 inline constexpr SubjectTraits kSubjectOf2009{{0.05, 0.113}, 0.0, 0.01};
-
-// Whether the second of two forces is perceived as the larger. Draws the same number of random numbers for every trial,
-// so that an answer does not change later trials.
-bool second_feels_larger(const SubjectTraits& traits, double first_N, double second_N, RandomStream& random) noexcept;
 
 // All answers of one subject, including training, to forces that are rendered exactly as planned.
 std::vector<StudyRecord> simulated_answers(const StudyHeader& header, const SubjectTraits& traits, std::uint64_t seed);

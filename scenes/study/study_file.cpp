@@ -145,11 +145,6 @@ Trials stroke_trials(const std::string& code, const StrokePair& strokes) {
 
 constexpr double kLargestRendered_N = 10.0;  // more than any device renders in a study
 
-std::string timing_line() {
-  return "# timing_ms lead_in " + std::to_string(kLeadIn_ticks) + " ramp " + std::to_string(kRamp_ticks) + " hold " +
-         std::to_string(kHold_ticks) + " pause " + std::to_string(kPause_ticks);
-}
-
 std::string column_names(bool strokes) {
   return std::string(
              "part,trial,reference_N,comparison_N,comparison_first,first_rendered_N,second_rendered_N,limited,answer,"
@@ -211,7 +206,9 @@ Error difference(std::string_view found, std::string_view expected, const std::s
 // The procedure and, with strokes, their names and figures, which include a checksum of the forces.
 std::string procedure_lines(const StudyHeader& header) {
   const std::string name = header.strokes == nullptr ? "constant" : "discriminate";
-  return "# procedure " + name + "\n" + timing_line() + "\n" +
+  return "# procedure " + name + "\n# timing_ms lead_in " + std::to_string(kLeadIn_ticks) + " ramp " +
+         std::to_string(kRamp_ticks) + " hold " + std::to_string(kHold_ticks) + " pause " +
+         std::to_string(kPause_ticks) + "\n" +
          (header.strokes == nullptr ? "" : "# strokes " + nlohmann::json(*header.strokes).dump() + "\n");
 }
 

@@ -139,6 +139,7 @@ struct StrokePair {
   // One force per tick of an interval, rounded to 0.1 mN; empty when the pair was read from a study file.
   std::vector<double> reference_N, comparison_N;
 };
+using StrokesPointer = std::shared_ptr<const StrokePair>;
 
 inline constexpr std::array<double, 4> kReferenceForces_N = {0.3, 0.5, 1.0, 2.5};
 inline constexpr std::array<int, 8> kComparisonPercent = {60, 70, 80, 90, 110, 120, 130, 140};
@@ -174,7 +175,7 @@ Stimuli stimuli_of(const StudyTrial& trial, const StrokePair* strokes);
 
 struct StudyHeader {
   std::string subject;
-  std::shared_ptr<const StrokePair> strokes = nullptr;  // null: constant stimuli
+  StrokesPointer strokes = nullptr;  // null: constant stimuli
   // The device of new answers, and whether it renders force. Both are stored with each answer, because a study may be
   // resumed with another device.
   std::string device = "unknown";
@@ -256,22 +257,17 @@ class StudyFile {
 // chosen among those up to 3.8 N and 90 N/s (below the presenter's limits) and 2.5 N RMS (the heat of a small motor).
 // The force over time is rendered to a still hand. The hand does not influence it, so this tests the discrimination
 // of forces, as the JND study does.
-// Thread guarantee: slow side (fits models, does I/O, allocates).
-
 // `scene`: name of a scene. `models`: methods, fitted as by `palpate fit`, or model files. Two: the reference and the
 // comparison. One: the comparison; the recorded force is the reference. None: as one, the first default model of the
 // scene. `recording`: the file to render, to which no model was fitted; empty: a recording of the scene's virtual
 // material with seed 2.
 // Errors: more than two models; those of load_scene, of requested_models, of the fits and of the recording; neither
 // recording nor virtual material; no piece within the limits.
-Result<std::shared_ptr<const StrokePair>> prepare_strokes(const std::string& scene,
-                                                          const std::vector<std::string>& models,
-                                                          const std::string& recording);
+Result<StrokesPointer> prepare_strokes(const std::string& scene, const std::vector<std::string>& models,
+                                       const std::string& recording);
 
 // The same for ready models; `reference` null: the recorded force.
-Result<std::shared_ptr<const StrokePair>> strokes_of(const Recording& recording,
-                                                     const std::shared_ptr<const ForceModel>& reference,
-                                                     const std::shared_ptr<const ForceModel>& comparison,
-                                                     const JndLine& jnd);
+Result<StrokesPointer> strokes_of(const Recording& recording, const std::shared_ptr<const ForceModel>& reference,
+                                  const std::shared_ptr<const ForceModel>& comparison, const JndLine& jnd);
 
 }  // namespace palpate

@@ -147,8 +147,7 @@ std::string StudySession::message(const StudyView& view) const {
   return {};
 }
 
-Result<std::unique_ptr<LiveStudy>> LiveStudy::open(const std::string& device, bool realtime,
-                                                   std::shared_ptr<const StrokePair> strokes) {
+Result<std::unique_ptr<LiveStudy>> LiveStudy::open(const std::string& device, bool realtime, StrokesPointer strokes) {
   auto opened = open_device(device, {.calibrations = calibrations_folder()});
   if (!opened) return opened.error();
   std::unique_ptr<LiveStudy> study(new LiveStudy);

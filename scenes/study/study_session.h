@@ -76,8 +76,7 @@ class StudySession final : public ForceSource {
 class LiveStudy {
  public:
   // `strokes`: null for constant stimuli. Errors: the device cannot be opened.
-  static Result<std::unique_ptr<LiveStudy>> open(const std::string& device, bool realtime,
-                                                 std::shared_ptr<const StrokePair> strokes);
+  static Result<std::unique_ptr<LiveStudy>> open(const std::string& device, bool realtime, StrokesPointer strokes);
   // Ramps the force to zero.
   ~LiveStudy();
 

@@ -21,7 +21,6 @@
 #include "scenes/material/rig.h"
 
 namespace palpate {
-
 namespace {
 
 Result<ModelRequest> request_of(const Scene& scene, const std::string& asked) {
@@ -62,6 +61,33 @@ std::vector<std::string> sizes_of(const Method& method) {
   std::vector<std::string> names;
   for (const int centres : kOfferedCentres) names.push_back(named(method, centres));
   return names;
+}
+
+// Niceness of fits, so that graphics and haptics have priority where there are few cores.
+constexpr int kNice = 5;
+// Progress of a fit when the virtual recording is done, which is done once.
+constexpr double kRecorded = 0.2;
+
+// Additional time of the first fit of a Base.
+constexpr double kPreparation_s = 1.0;
+
+constexpr std::uint64_t kReadySeed = 1;
+constexpr const char* kInputs = "/inputs.txt";
+
+std::string inputs_of(const Scene& scene, std::uint64_t seed) {
+  return "material " + scene.material.value_or("none") + "\nseed " + std::to_string(seed) + "\nfeatures " +
+         describe_features(scene) + "\nJND " + general(scene.jnd.offset_N, 17) + " N + " +
+         general(scene.jnd.weber_fraction, 17) + " F\n";
+}
+
+// Empty if the inputs of the ready models are others.
+std::string ready_folder(const std::string& folder, const Scene& scene, std::uint64_t seed) {
+  const std::string of_scene = folder + "/" + scene.name;
+  return read_whole_file(of_scene + kInputs) == inputs_of(scene, seed) ? of_scene : "";
+}
+
+std::string file_in(const std::string& folder, const ModelPlan& plan) {
+  return folder + "/" + plan_name(plan) + ".json";
 }
 
 }  // namespace
@@ -116,37 +142,6 @@ Result<std::vector<ModelRequest>> requested_models(const Scene& scene, const std
   return Error{"found " + std::to_string(requests.size()) + " models, expected at most " + std::to_string(kMaxModels) +
                "; leave some out"};
 }
-
-namespace {
-
-// Niceness of fits, so that graphics and haptics have priority where there are few cores.
-constexpr int kNice = 5;
-// Progress of a fit when the virtual recording is done, which is done once.
-constexpr double kRecorded = 0.2;
-
-// Additional time of the first fit of a Base.
-constexpr double kPreparation_s = 1.0;
-
-constexpr std::uint64_t kReadySeed = 1;
-constexpr const char* kInputs = "/inputs.txt";
-
-std::string inputs_of(const Scene& scene, std::uint64_t seed) {
-  return "material " + scene.material.value_or("none") + "\nseed " + std::to_string(seed) + "\nfeatures " +
-         describe_features(scene) + "\nJND " + general(scene.jnd.offset_N, 17) + " N + " +
-         general(scene.jnd.weber_fraction, 17) + " F\n";
-}
-
-// Empty if the inputs of the ready models are others.
-std::string ready_folder(const std::string& folder, const Scene& scene, std::uint64_t seed) {
-  const std::string of_scene = folder + "/" + scene.name;
-  return read_whole_file(of_scene + kInputs) == inputs_of(scene, seed) ? of_scene : "";
-}
-
-std::string file_in(const std::string& folder, const ModelPlan& plan) {
-  return folder + "/" + plan_name(plan) + ".json";
-}
-
-}  // namespace
 
 // On Linux, the niceness of one thread is set by its thread id.
 void lower_thread_priority() noexcept { setpriority(PRIO_PROCESS, static_cast<id_t>(syscall(SYS_gettid)), kNice); }

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <initializer_list>
 
+#include "engine/base/random_stream.h"
 #include "scenes/scene/scene.h"
 #include "tests/support/message_parts.h"
 #include "tests/support/study_driving.h"
