@@ -1,29 +1,22 @@
 // palpate fit: fits a model to recordings and writes its file. palpate export: writes a model as one self-contained C99
 // file.
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <iostream>
-#include <memory>
 #include <optional>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include "engine/base/files.h"
 #include "engine/base/text.h"
+#include "engine/live/pacer.h"
 #include "engine/tick/haptics_tick.h"
-#include "models/check/check_recording.h"
 #include "models/export/export_c.h"
 #include "models/fit/fit.h"
 #include "models/model/file/model_io.h"
-#include "models/model/fitted_model.h"
 #include "scenes/cli/verbs.h"
 #include "scenes/evaluation/model_errors.h"
 #include "scenes/report/report.h"
-#include "scenes/scene/scene.h"
 
 namespace palpate::cli {
 namespace {
@@ -152,7 +145,7 @@ Status run_fit(const FitArguments& arguments) {
   if (!scene) return scene.error();
   // Reports before the fit if the output cannot be written.
   if (const auto trial = AtomicFile::create(arguments.out, arguments.force); !trial) return trial.error();
-  const auto began = std::chrono::steady_clock::now();
+  const double began_s = steady_now_s();
   std::optional<ProgressLine> line("fitting " + plan_name(arguments.plan));
   auto checked = check_before_use(arguments.recordings, check_request(*scene));
   if (!checked) return checked.error();
@@ -162,7 +155,7 @@ Status run_fit(const FitArguments& arguments) {
   ModelFits fits(training_recordings(*checked), training_scene(*scene));
   const auto fitted = fits.fit(arguments.plan, {[&](double fraction) { return line->update(fraction); }});
   if (!fitted) return fitted.error();
-  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+  const double seconds = steady_now_s() - began_s;
   const std::string contradiction = training_contradiction(*checked, fitted->model);
   if (Status status = save_model(arguments.out, fitted->model->data(), arguments.force); !status) return status;
   line.reset();  // ends the progress line

@@ -12,7 +12,6 @@
 #include <thread>
 
 #include "engine/base/files.h"
-#include "engine/base/text.h"
 #include "scenes/cli/verbs.h"
 #include "scenes/report/publish.h"
 

@@ -1,10 +1,7 @@
 // palpate import: converts a table of another program to a recording.
 #include <charconv>
 #include <iostream>
-#include <memory>
 #include <optional>
-#include <string>
-#include <vector>
 
 #include "engine/base/files.h"
 #include "engine/base/text.h"
@@ -118,7 +115,7 @@ Status move_zeros(const ImportOptions& options, ImportedTable& table) {
     }
     at_m = surface.raw_offset_m;
   } else if (options.origin != "first") {
-    at_m = finite_number(options.origin).value_or(0.0);  // checked by check_zero
+    at_m = finite_number(options.origin).value_or(0.0);  // checked by is_zero
   }
   for (RecordingRow& row : recording.rows) row.position_m -= at_m;
   table.notes.push_back("position 0 was at " + fixed(1e3 * at_m, 4) + " mm in the table" +
@@ -126,25 +123,16 @@ Status move_zeros(const ImportOptions& options, ImportedTable& table) {
   return {};
 }
 
-std::string check_zero(const std::string& origin) {
-  return origin == "contact" || origin == "first" || finite_number(origin)
-             ? ""
-             : "found \"" + origin + "\", expected contact, first or metres";
+// Checks that `good` holds for the text of an option.
+CLI::Validator expecting(const std::string& expected, bool (*good)(const std::string&), const std::string& type = "") {
+  return {[=](const std::string& text) { return good(text) ? "" : "found \"" + text + "\", expected " + expected; },
+          type};
 }
 
-std::string check_tare(const std::string& tare) {
-  return tare == "auto" || finite_number(tare) ? "" : "found \"" + tare + "\", expected auto or newtons";
-}
-
-std::string check_rows(const std::string& text) {
-  return line_range(text) ? "" : "found \"" + text + "\", expected two lines of the file, as in 12-340";
-}
-
-std::string check_gain(const std::string& gain) {
-  return finite_number(gain).value_or(0.0) != 0.0
-             ? ""
-             : "found \"" + gain + "\", expected newtons per volt, a number other than 0";
-}
+bool is_zero(const std::string& text) { return text == "contact" || text == "first" || finite_number(text); }
+bool is_tare(const std::string& text) { return text == "auto" || finite_number(text); }
+bool is_gain(const std::string& text) { return finite_number(text).value_or(0.0) != 0.0; }
+bool is_range(const std::string& text) { return line_range(text).has_value(); }
 
 double seconds_of(const ImportedTable& table) {
   return table.recording.rows.back().time_s - table.recording.rows.front().time_s;
@@ -248,7 +236,7 @@ void add_import(CLI::App& app, Verbs& verbs) {
               "--zero,--origin", options->origin,
               "Position that becomes 0: contact (where the force begins), first (the first row), or a value in m "
               "[unchanged]")
-          ->check(CLI::Validator(check_zero, "contact|first|M"));
+          ->check(expecting("contact, first or metres", is_zero, "contact|first|M"));
   verb->add_option("--begin-as", options->begin_as,
                    "Training recording under the same preload: the positions are moved so that both begin at one "
                    "position, which uses the first force of this recording [unchanged]")
@@ -256,15 +244,15 @@ void add_import(CLI::App& app, Verbs& verbs) {
       ->type_name("REC.csv");
   verb->add_option("--tare", options->tare,
                    "Force that becomes 0: auto (the force of free air), or a value in N [unchanged]")
-      ->check(CLI::Validator(check_tare, "auto|N"));
+      ->check(expecting("auto or newtons", is_tare, "auto|N"));
   verb->add_option("--rows", options->rows, "Lines of the file, from 1, that hold the rows [all]")
-      ->check(CLI::Validator(check_rows, ""))
+      ->check(expecting("two lines of the file, as in 12-340", is_range))
       ->type_name("FROM-TO");
   verb->add_option("--block", options->request.block, "Block of rows to read, from 1, where there are several")
       ->check(number_from(1.0, 1e9))
       ->type_name("N");
   verb->add_option("--gain", options->request.gain_N_per_V, "Newtons per volt, for a force recorded in volts")
-      ->check(CLI::Validator(check_gain, ""))
+      ->check(expecting("newtons per volt, a number other than 0", is_gain))
       ->type_name("N_PER_V");
   verb->add_option("--skip-bad-rows", options->request.skip_bad_rows,
                    "Largest number of unreadable rows to leave out; the others keep their times [0]")

@@ -1,16 +1,12 @@
 // palpate devices and palpate scenes: list what there is, and why a device cannot be opened.
 #include <cstdio>
-#include <memory>
-#include <string>
 #include <string_view>
-#include <vector>
 
 #include "devices/bridge/bridge_bus.h"
 #include "devices/hid/hidapi_bus.h"
 #include "devices/link/device_link.h"
 #include "devices/registry/device_registry.h"
 #include "scenes/cli/verbs.h"
-#include "scenes/scene/scene.h"
 
 namespace palpate::cli {
 

@@ -5,14 +5,11 @@
 #include <exception>
 #include <iostream>
 #include <new>
-#include <string>
-#include <vector>
 
 #if defined(__GLIBC__)
 #include <malloc.h>
 #endif
 
-#include "engine/base/signals.h"
 #include "engine/base/text.h"
 #include "models/linear/lapack.h"
 #include "models/model/vector_loops.h"

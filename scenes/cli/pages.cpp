@@ -1,9 +1,6 @@
 // The verbs that write a page of results. palpate report: compares all methods on the user's recordings. palpate paper:
 // runs the protocol of Hoever & Harders (2009) on virtual material. palpate hard: every method on every hard case.
 #include <cstdio>
-#include <memory>
-#include <string>
-#include <vector>
 
 #include "engine/base/files.h"
 #include "engine/base/text.h"
@@ -22,7 +19,6 @@ struct Arguments {
   std::string after;
   std::string scene = "silicone_block";
   double budget_percent = 5.0;  // of the period of a tick
-  bool json = false;
   ReportRequest request;
 };
 
@@ -59,7 +55,7 @@ Status run_report(Arguments arguments) {
   const auto answer =
       with_progress("reporting", [&](const FitControl& control) { return make_report(request, control); });
   if (!answer) return answer.error();
-  if (arguments.json) return print_file(request.out + "/report.json");
+  if (request.json) return print_file(request.out + "/report.json");
   print_table(answer->table, true);
   std::printf("\n%s\n", answer->sentence.c_str());
   for (const std::string& line : answer->details) std::printf("  %s\n", line.c_str());
@@ -102,11 +98,11 @@ Status run_report_or_each(Arguments arguments) {
   return run_report(std::move(arguments));
 }
 
-Status run_paper(const PaperRequest& request, bool json) {
+Status run_paper(const PaperRequest& request) {
   const auto answer =
       with_progress("measuring", [&](const FitControl& control) { return make_paper(request, control); });
   if (!answer) return answer.error();
-  if (json) return print_file(request.out + "/report.json");
+  if (request.json) return print_file(request.out + "/report.json");
   std::printf("%s\nwritten  %s/index.html, with its tables and figures\n", answer->c_str(), request.out.c_str());
   return {};
 }
@@ -119,20 +115,21 @@ void print_marks(const std::vector<HardRow>& rows) {
       hard_answer(rows).c_str());
 }
 
-Status run_hard_cases(const PageRequest& page, bool json) {
+Status run_hard_cases(const PageRequest& page) {
   if (!page.out.empty()) {  // tried before the cases run, which takes half a minute
     if (const auto trial = ReportFolder::create(page.out, page.force); !trial) return trial.error();
   }
   const auto rows = with_progress("testing", [](const FitControl& control) { return run_hard(control); });
   if (!rows) return rows.error();
-  if (json) {
+  if (page.json) {
     print_json(hard_json(*rows));
   } else {
     print_marks(*rows);
   }
   if (!page.out.empty()) {
     if (const Status written = write_hard_page(*rows, page); !written) return written;
-    if (!json) std::printf("written  %s/index.html, with its tables\n", printable(page.out, std::string::npos).c_str());
+    if (!page.json)
+      std::printf("written  %s/index.html, with its tables\n", printable(page.out, std::string::npos).c_str());
   }
   const std::vector<std::string> missed = missed_cells(*rows);
   if (missed.empty()) return {};
@@ -141,10 +138,10 @@ Status run_hard_cases(const PageRequest& page, bool json) {
   return Error{message};
 }
 
-CLI::Option* add_page_options(CLI::App* verb, PageRequest& request, bool& json) {
+CLI::Option* add_page_options(CLI::App* verb, PageRequest& request) {
   request.version = "palpate " PALPATE_VERSION;
   verb->parse_complete_callback([&request] { request.command = kept_command(); });
-  verb->add_flag("--json", json, "Print one JSON object, which report.json in the folder has, too");
+  verb->add_flag("--json", request.json, "Print one JSON object, which report.json in the folder has, too");
   verb->add_flag("--force", request.force, "Replace an earlier page");
   return verb->add_option("--out", request.out, "Folder to create, with a page of the results")->type_name("DIR");
 }
@@ -169,7 +166,7 @@ void add_report(CLI::App& app, Verbs& verbs) {
       ->type_name("CSV");
   verb->add_option("--scene", arguments->scene, "Scene that gives the features and the JND line")
       ->capture_default_str();
-  add_page_options(verb, arguments->request, arguments->json)->required();
+  add_page_options(verb, arguments->request)->required();
   verb->add_option("--budget", arguments->budget_percent,
                    "Longest tick of a model that is recommended, in percent of the period of 1 ms")
       ->check(CLI::Range(1e-6, 100.0))
@@ -181,18 +178,16 @@ void add_report(CLI::App& app, Verbs& verbs) {
 void add_paper(CLI::App& app, Verbs& verbs) {
   CLI::App* verb = app.add_subcommand("paper", "Repeat the protocol, figures and claims of Hoever & Harders (2009)");
   const auto request = std::make_shared<PaperRequest>();
-  const auto json = std::make_shared<bool>(false);
-  add_page_options(verb, *request, *json)->required();
+  add_page_options(verb, *request)->required();
   verb->add_flag("--quick", request->quick, "Use a fifth of the recordings and fewer fits");
-  verbs.emplace_back(verb, [request, json] { return run_paper(*request, *json); });
+  verbs.emplace_back(verb, [request] { return run_paper(*request); });
 }
 
 void add_hard(CLI::App& app, Verbs& verbs) {
   CLI::App* verb = app.add_subcommand("hard", "Run every method on every hard case, and compare with what is expected");
   const auto page = std::make_shared<PageRequest>();
-  const auto json = std::make_shared<bool>(false);
-  add_page_options(verb, *page, *json);
-  verbs.emplace_back(verb, [page, json] { return run_hard_cases(*page, *json); });
+  add_page_options(verb, *page);
+  verbs.emplace_back(verb, [page] { return run_hard_cases(*page); });
 }
 
 }  // namespace palpate::cli

@@ -1,22 +1,17 @@
-// The verbs that make recordings. palpate record: motion and measured force of a real tool from a device.
-// palpate synth: the virtual rig.
+// The verbs that make recordings and check them. palpate record: motion and measured force of a real tool from a
+// device. palpate synth: the virtual rig. palpate check: whether a recording is suitable for a fit.
 #include <poll.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
 #include <iomanip>
 #include <iostream>
-#include <memory>
-#include <string>
 #include <thread>
-#include <utility>
 
 #include "devices/bridge/bridge_bus.h"
 #include "devices/registry/device_registry.h"
 #include "engine/base/files.h"
-#include "engine/base/signals.h"
 #include "engine/base/text.h"
 #include "engine/live/haptics_loop.h"
 #include "engine/live/pacer.h"
@@ -25,7 +20,6 @@
 #include "scenes/cli/verbs.h"
 #include "scenes/live/session_recorder.h"
 #include "scenes/material/rig.h"
-#include "scenes/scene/scene.h"
 
 namespace palpate::cli {
 namespace {
@@ -36,6 +30,55 @@ constexpr double kPeriod_s = 2.0;
 constexpr double kRest = 10.0;  // pause after a check, as a multiple of its duration
 constexpr int kSmallStrokes = 10;
 constexpr const char* kFollowed[] = {"explored", "no_hold", "short_hold"};
+
+void print_check_text(const CheckedFile& file) {
+  const std::string verdict = file.check.verdict();
+  std::printf("%s: %s\n", printable(file.path, std::string::npos).c_str(),
+              verdict == "care"       ? "usable with care"
+              : verdict == "unusable" ? "not usable"
+                                      : "usable");
+  for (const Finding& finding : file.check.findings) {
+    std::printf("  %-8s %-17s %s%s%s\n", severity_name(finding.severity), finding.code.c_str(), finding.text.c_str(),
+                finding.advice.empty() ? "" : "; ", with_program_name(finding.advice).c_str());
+  }
+  std::printf(
+      "  the noise of the force sensor alone leaves %s %% of the contact samples within the JND; this says nothing "
+      "about a model\n",
+      fixed(100.0 * file.check.noise_floor_within_jnd, 1).c_str());
+}
+
+void print_check_json(const std::vector<CheckedFile>& files) {
+  using Json = nlohmann::ordered_json;
+  Json list = Json::array();
+  for (const CheckedFile& file : files) {
+    Json findings = Json::array();
+    for (const Finding& finding : file.check.findings) {
+      findings.push_back({{"code", finding.code},
+                          {"severity", severity_name(finding.severity)},
+                          {"value", finding.value},
+                          {"text", finding.text},
+                          {"advice", finding.advice}});
+    }
+    list.push_back({{"file", file.path},
+                    {"verdict", file.check.verdict()},
+                    {"findings", findings},
+                    {"noise_floor_within_jnd", file.check.noise_floor_within_jnd},
+                    {"surface_identified", file.check.surface_identified},
+                    {"surface_offset_m", file.check.surface_offset_m},
+                    {"force_zero_N", file.check.force_zero_N}});
+  }
+  print_json({{"recordings", list}});
+}
+
+// The output of `palpate check`; as text with the command that fits the recordings if they are usable, ready to copy.
+void print_check(const std::vector<CheckedFile>& files, bool json) {
+  if (json) return print_check_json(files);
+  for (const CheckedFile& file : files) print_check_text(file);
+  if (!refuse_unusable(files)) return;
+  std::string next = "next: palpate fit --recording";
+  for (const CheckedFile& file : files) next += " " + shell_word(file.path);
+  std::printf("%s --out model.json\n", with_program_name(next).c_str());
+}
 
 struct RecordOptions {
   std::string device, out, scene = "silicone_block";
@@ -221,6 +264,29 @@ void add_record(CLI::App& app, Verbs& verbs) {
 
 namespace {
 
+struct CheckOptions {
+  std::vector<std::string> recordings;
+  std::string scene = "silicone_block";
+  bool json = false;
+};
+
+Status run_check(const CheckOptions& options) {
+  const auto scene = load_scene(options.scene);
+  if (!scene) return scene.error();
+  const auto files = check_recording_files(options.recordings, check_request(*scene));
+  if (!files) return files.error();
+  print_check(*files, options.json);
+  // The findings are printed already.
+  for (const CheckedFile& file : *files) {
+    if (refuse_unusable({file})) continue;
+    std::vector<std::string> codes;
+    for (const Finding& finding : file.check.findings)
+      if (finding.severity == Severity::fatal) codes.push_back(finding.code);
+    return Error{file.path + ": not usable for a fit: " + joined(codes) + "; follow the advice above"};
+  }
+  return {};
+}
+
 struct SynthOptions {
   RigSettings rig;
   std::string out;
@@ -277,6 +343,17 @@ void add_synth(CLI::App& app, Verbs& verbs) {
   verb->add_flag_callback("--list", list_materials, "Print the materials and their relaxation times");
   verb->parse_complete_callback([verb, options] { check_usage(*verb, *options); });
   verbs.emplace_back(verb, [options] { return run_synth(*options); });
+}
+
+void add_check(CLI::App& app, Verbs& verbs) {
+  auto options = std::make_shared<CheckOptions>();
+  CLI::App* verb = app.add_subcommand("check", "Check whether recordings are suitable for a fit");
+  verb->add_option("recording", options->recordings, "Recordings to check (CSV)")->required()->type_name("REC.csv");
+  verb->add_option("--scene", options->scene, "Scene that gives the JND line, and whether the force has a memory")
+      ->capture_default_str()
+      ->check(scene_name());
+  verb->add_flag("--json", options->json, "Print one JSON object");
+  verbs.emplace_back(verb, [options] { return run_check(*options); });
 }
 
 }  // namespace palpate::cli

@@ -4,8 +4,6 @@
 #include <cstdio>
 #include <filesystem>
 #include <optional>
-#include <string>
-#include <vector>
 
 #include "engine/base/files.h"
 #include "engine/base/text.h"
@@ -15,7 +13,6 @@
 #include "scenes/evaluation/evaluate.h"
 #include "scenes/plot/plot.h"
 #include "scenes/report/publish.h"
-#include "scenes/scene/scene.h"
 
 namespace palpate::cli {
 namespace {
@@ -27,6 +24,11 @@ struct Options {
   std::vector<std::string> recordings, models, names;
   std::string after, out, plot;
   bool all = false, json = false, force = false;
+};
+
+struct LoadedModel {
+  std::string name;  // unique among the models of one run
+  std::shared_ptr<const FittedModel> model;
 };
 
 struct ReplayedModel {
@@ -60,6 +62,45 @@ constexpr ErrorColumn kFigures[] = {{"rms_error_N", "RMS mN", &ErrorSummary::rms
                                     {"within_jnd", "WITHIN JND %", &ErrorSummary::within_jnd, kInPercent, 2, true},
                                     {"p99_error_over_jnd", "P99 JND", &ErrorSummary::p99_error_over_jnd, 1.0, 2, true},
                                     {"max_error_over_jnd", "MAX JND", &ErrorSummary::max_error_over_jnd, 1.0, 2, true}};
+
+// `names` with suffixes -2, -3 ... for repeated names.
+std::vector<std::string> distinct_names(const std::vector<std::string>& names) {
+  std::vector<std::string> distinct;
+  for (const std::string& name : names) {
+    std::string candidate = name;
+    for (int i = 2; std::ranges::count(distinct, candidate) > 0; ++i) candidate = name + "-" + std::to_string(i);
+    distinct.push_back(candidate);
+  }
+  return distinct;
+}
+
+// `given`: one name for each file. Empty: the names in the files, or the file names where those are equal. Errors: more
+// than kMaxModels models; another number of names; a file that is no model.
+Result<std::vector<LoadedModel>> load_models(const std::vector<std::string>& paths,
+                                             const std::vector<std::string>& given) {
+  if (paths.size() > kMaxModels) {
+    return Error{"found " + std::to_string(paths.size()) + " models, expected at most " + std::to_string(kMaxModels) +
+                 "; replay them in several runs"};
+  }
+  if (!given.empty() && given.size() != paths.size()) {
+    return Error{"found " + std::to_string(given.size()) + " names for " + std::to_string(paths.size()) +
+                 " models, expected one each; give --name once for every --model"};
+  }
+  std::vector<LoadedModel> loaded;
+  for (const std::string& path : paths) {
+    const auto model = load_model_file(path, "give it with --recording");
+    if (!model) return model.error();
+    loaded.push_back({(*model)->name(), *model});
+  }
+  std::vector<std::string> names = given;
+  for (std::size_t i = 0; given.empty() && i < loaded.size(); ++i) {
+    const bool unique = std::ranges::count(loaded, loaded[i].name, &LoadedModel::name) == 1;
+    names.push_back(unique ? loaded[i].name : std::filesystem::path(paths[i]).stem().string());
+  }
+  names = distinct_names(names);
+  for (std::size_t i = 0; i < loaded.size(); ++i) loaded[i].name = names[i];
+  return loaded;
+}
 
 // The output file of each recording: `path` for one, NAME_RECORDING.csv for several; empty if `path` is empty.
 std::vector<std::string> outputs(const std::string& path, const std::vector<std::string>& recordings) {
@@ -207,60 +248,48 @@ void print_recording(const ReplayedRecording& replayed, bool all) {
   print_ambiguity_note(replayed.models);
 }
 
+// Each distinct feature: the first model that has it, and its index in the features of that model.
+using FeatureColumns = std::vector<std::pair<std::size_t, std::size_t>>;
+
+FeatureColumns distinct_features(const std::vector<LoadedModel>& models) {
+  FeatureColumns columns;
+  std::vector<FeatureSpec> specs;
+  for (std::size_t m = 0; m < models.size(); ++m) {
+    const std::vector<FeatureSpec>& features = models[m].model->features();
+    for (std::size_t i = 0; i < features.size(); ++i) {
+      if (std::ranges::count(specs, features[i]) > 0) continue;
+      specs.push_back(features[i]);
+      columns.emplace_back(m, i);
+    }
+  }
+  return columns;
+}
+
 // FORCES.csv with one row per sample: time_s, position_m, force_N, depth_m, each distinct feature of the models, then
 // "<model name>_N" for each model.
-class ForcesFile {
- public:
-  static Result<ForcesFile> create(const std::string& path, bool overwrite, const std::vector<LoadedModel>& models) {
-    Result<AtomicFile> file = AtomicFile::create(path, overwrite);
-    if (!file) return file.error();
-    ForcesFile forces(std::move(*file));
-    std::vector<FeatureSpec> specs;
-    std::vector<std::string> feature_names;
-    for (std::size_t m = 0; m < models.size(); ++m) {
-      const std::vector<FeatureSpec>& features = models[m].model->features();
-      for (std::size_t i = 0; i < features.size(); ++i) {
-        const FeatureSpec& spec = features[i];
-        if (std::ranges::count(specs, spec) > 0) continue;
-        specs.push_back(spec);
-        feature_names.push_back(feature_name(spec));
-        forces.columns_.emplace_back(m, i);
-      }
-    }
-    std::string header = "time_s,position_m,force_N,depth_m";
-    for (const std::string& name : distinct_names(feature_names)) header += "," + name;
-    for (const LoadedModel& one : models) header += "," + one.name + "_N";
-    forces.file_.write(header + "\n");
-    return forces;
-  }
+std::string forces_header(const std::vector<LoadedModel>& models, const FeatureColumns& columns) {
+  std::vector<std::string> features, names{"time_s", "position_m", "force_N", "depth_m"};
+  for (const auto& [model, index] : columns) features.push_back(feature_name(models[model].model->features()[index]));
+  std::ranges::copy(distinct_names(features), std::back_inserter(names));
+  for (const LoadedModel& one : models) names.push_back(one.name + "_N");
+  return joined(names, ",") + "\n";
+}
 
-  void add(const RecordingRow& row, const TickSnapshot& snapshot, const HapticsTick& tick) {
-    std::string line;
-    const auto append = [&](double value) { (line += line.empty() ? "" : ",") += shortest(value); };
-    for (const double value : {row.time_s, row.position_m, row.force_N, snapshot.depth_m}) append(value);
-    for (const auto& [model, index] : columns_) append(tick.features_of(model).values[index]);
-    for (std::size_t m = 0; m < tick.model_count(); ++m) append(snapshot.force_N[m]);
-    file_.write(line + "\n");
-  }
-
-  Status commit() { return file_.commit(); }
-
- private:
-  explicit ForcesFile(AtomicFile file) : file_(std::move(file)) {}
-
-  AtomicFile file_;
-  // The first model with each feature, and the place in its feature vector.
-  std::vector<std::pair<std::size_t, std::size_t>> columns_;
-};
+std::string forces_row(const FeatureColumns& columns, const RecordingRow& row, const TickSnapshot& snapshot,
+                       const HapticsTick& tick) {
+  std::vector<std::string> cells;
+  for (const double value : {row.time_s, row.position_m, row.force_N, snapshot.depth_m})
+    cells.push_back(shortest(value));
+  for (const auto& [model, index] : columns) cells.push_back(shortest(tick.features_of(model).values[index]));
+  for (std::size_t m = 0; m < tick.model_count(); ++m) cells.push_back(shortest(snapshot.force_N[m]));
+  return joined(cells, ",") + "\n";
+}
 
 // Draws the measured force, every model's difference from it over the JND, and the error against the force.
 Status draw_replay(const std::string& path, const std::string& recording, const std::vector<ReplayedModel>& models,
                    const std::vector<ComparedMoment>& moments, bool overwrite) {
   std::vector<ComparedModel> compared;
-  Panel against;
-  against.x.title = "Measured force [N]";
-  against.y = {"Mean error + deviation", "N", true};
-  against.names_at_ends = true;
+  Panel against{.x = {"Measured force [N]"}, .y = {"Mean error + deviation", "N", true}, .names_at_ends = true};
   Series jnd{"JND", kMutedColour, Mark::dashed, {}};
   for (std::size_t i = 0; i < models.size(); ++i) {
     const auto& [name, model] = models[i].loaded;
@@ -275,10 +304,7 @@ Status draw_replay(const std::string& path, const std::string& recording, const 
   }
   merge_equal(against.series);
   against.series.push_back(std::move(jnd));
-  Plot plot;
-  plot.name = "replay";
-  plot.height = 0.7;
-  plot.panels = compared_forces(recording, compared, moments);
+  Plot plot{.name = "replay", .height = 0.7, .panels = compared_forces(recording, compared, moments)};
   plot.panels.push_back(std::move(against));
   return draw_plot(plot, path, overwrite);
 }
@@ -294,21 +320,21 @@ Result<ReplayedRecording> replay_one(const CheckedFile& checked, const Recording
     evaluated.push_back({one.model, one.model->data().jnd});
     pointers.push_back(one.model);
   }
-  std::optional<ForcesFile> forces;
+  const FeatureColumns columns = distinct_features(models);
+  std::optional<AtomicFile> forces;
   std::vector<ComparedMoment> moments;
   if (!forces_path.empty()) {
-    Result<ForcesFile> file = ForcesFile::create(forces_path, overwrite, models);
+    auto file = AtomicFile::create(forces_path, overwrite);
     if (!file) return file.error();
     forces.emplace(std::move(*file));
+    forces->write(forces_header(models, columns));
   }
   // A test keeps every row, also those that a fit would leave out.
   const Result<Recording> whole = read_recording(checked.path);
   if (!whole) return whole.error();
-  EvaluationRequest request;
-  request.after = after;
-  request.move_beginning = true;
+  EvaluationRequest request{.after = after, .move_beginning = true};
   request.also = [&](const RecordingRow& row, const TickSnapshot& snapshot, const HapticsTick& tick) {
-    if (forces) forces->add(row, snapshot, tick);
+    if (forces) forces->write(forces_row(columns, row, snapshot, tick));
     const auto begin = snapshot.force_N.begin();
     if (!plot_path.empty())
       moments.push_back({row.time_s, row.force_N, snapshot.in_contact, {begin, begin + snapshot.model_count}});

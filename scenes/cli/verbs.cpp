@@ -8,11 +8,9 @@
 
 #include "engine/base/text.h"
 #include "engine/recording/recording.h"
-#include "engine/tick/haptics_tick.h"
 #include "models/model/file/model_io.h"
 
 namespace palpate::cli {
-
 namespace {
 
 struct Called {
@@ -22,6 +20,20 @@ struct Called {
 Called& called() {
   static Called one;
   return one;
+}
+
+constexpr auto kDrawInterval = std::chrono::milliseconds(100);
+bool hidden = false;
+
+// "label  37 %  12 s left"; the remaining time is shown after 2 % and 1 s.
+std::string progress_text(const std::string& label, double fraction, double elapsed_s) {
+  fraction = fraction > 0.0 ? std::min(fraction, 1.0) : 0.0;  // a NaN is 0
+  char numbers[64];
+  std::snprintf(numbers, sizeof numbers, "  %3.0f %%", 100.0 * fraction);
+  std::string text = label + numbers;
+  if (fraction >= 0.02 && elapsed_s >= 1.0)
+    text += "  " + fixed(elapsed_s * (1.0 - fraction) / fraction, 0) + " s left";
+  return text;
 }
 
 }  // namespace
@@ -76,99 +88,10 @@ Result<std::vector<CheckedFile>> check_before_use(const std::vector<std::string>
   return files;
 }
 
-namespace {
-
-void print_check_text(const CheckedFile& file) {
-  const std::string verdict = file.check.verdict();
-  std::printf("%s: %s\n", printable(file.path, std::string::npos).c_str(),
-              verdict == "care"       ? "usable with care"
-              : verdict == "unusable" ? "not usable"
-                                      : "usable");
-  for (const Finding& finding : file.check.findings) {
-    std::printf("  %-8s %-17s %s%s%s\n", severity_name(finding.severity), finding.code.c_str(), finding.text.c_str(),
-                finding.advice.empty() ? "" : "; ", with_program_name(finding.advice).c_str());
-  }
-  std::printf(
-      "  the noise of the force sensor alone leaves %s %% of the contact samples within the JND; this says nothing "
-      "about a model\n",
-      fixed(100.0 * file.check.noise_floor_within_jnd, 1).c_str());
-}
-
-void print_check_json(const std::vector<CheckedFile>& files) {
-  using Json = nlohmann::ordered_json;
-  Json list = Json::array();
-  for (const CheckedFile& file : files) {
-    Json findings = Json::array();
-    for (const Finding& finding : file.check.findings) {
-      findings.push_back({{"code", finding.code},
-                          {"severity", severity_name(finding.severity)},
-                          {"value", finding.value},
-                          {"text", finding.text},
-                          {"advice", finding.advice}});
-    }
-    list.push_back({{"file", file.path},
-                    {"verdict", file.check.verdict()},
-                    {"findings", findings},
-                    {"noise_floor_within_jnd", file.check.noise_floor_within_jnd},
-                    {"surface_identified", file.check.surface_identified},
-                    {"surface_offset_m", file.check.surface_offset_m},
-                    {"force_zero_N", file.check.force_zero_N}});
-  }
-  print_json({{"recordings", list}});
-}
-
-}  // namespace
-
-void print_check(const std::vector<CheckedFile>& files, bool json) {
-  if (json) return print_check_json(files);
-  for (const CheckedFile& file : files) print_check_text(file);
-  if (!refuse_unusable(files)) return;
-  std::string next = "next: palpate fit --recording";
-  for (const CheckedFile& file : files) next += " " + shell_word(file.path);
-  std::printf("%s --out model.json\n", with_program_name(next).c_str());
-}
-
 Result<std::shared_ptr<const FittedModel>> load_model_file(const std::string& path, const std::string& advice) {
   auto model = load_model(path);
   if (model || !read_recording(path, 0)) return model;
   return Error{path + " is a recording, expected a model file (JSON, made by palpate fit); " + advice};
-}
-
-std::vector<std::string> distinct_names(const std::vector<std::string>& names) {
-  std::vector<std::string> distinct;
-  for (const std::string& name : names) {
-    std::string candidate = name;
-    for (int i = 2; std::ranges::count(distinct, candidate) > 0; ++i) candidate = name + "-" + std::to_string(i);
-    distinct.push_back(candidate);
-  }
-  return distinct;
-}
-
-Result<std::vector<LoadedModel>> load_models(const std::vector<std::string>& paths,
-                                             const std::vector<std::string>& given) {
-  if (paths.size() > kMaxModels) {
-    return Error{"found " + std::to_string(paths.size()) + " models, expected at most " + std::to_string(kMaxModels) +
-                 "; replay them in several runs"};
-  }
-  if (!given.empty() && given.size() != paths.size()) {
-    return Error{"found " + std::to_string(given.size()) + " names for " + std::to_string(paths.size()) +
-                 " models, expected one each; give --name once for every --model"};
-  }
-  std::vector<std::shared_ptr<const FittedModel>> models;
-  for (const std::string& path : paths) {
-    auto model = load_model_file(path, "give it with --recording");
-    if (!model) return model.error();
-    models.push_back(*model);
-  }
-  std::vector<std::string> names = given;
-  for (std::size_t i = 0; given.empty() && i < models.size(); ++i) {
-    const bool unique = std::ranges::count(models, models[i]->name(), &FittedModel::name) == 1;
-    names.push_back(unique ? models[i]->name() : std::filesystem::path(paths[i]).stem().string());
-  }
-  names = distinct_names(names);
-  std::vector<LoadedModel> loaded;
-  for (std::size_t i = 0; i < models.size(); ++i) loaded.push_back({names[i], models[i]});
-  return loaded;
 }
 
 Status refuse_input_as_output(const std::string& out, const std::vector<std::string>& inputs,
@@ -216,24 +139,7 @@ void print_table(const std::vector<std::vector<std::string>>& rows, bool numbers
   }
 }
 
-namespace {
-
-constexpr auto kDrawInterval = std::chrono::milliseconds(100);
-bool hidden = false;
-
-}  // namespace
-
 void hide_progress() { hidden = true; }
-
-std::string progress_text(const std::string& label, double fraction, double elapsed_s) {
-  fraction = fraction > 0.0 ? std::min(fraction, 1.0) : 0.0;  // a NaN is 0
-  char numbers[64];
-  std::snprintf(numbers, sizeof numbers, "  %3.0f %%", 100.0 * fraction);
-  std::string text = label + numbers;
-  if (fraction >= 0.02 && elapsed_s >= 1.0)
-    text += "  " + fixed(elapsed_s * (1.0 - fraction) / fraction, 0) + " s left";
-  return text;
-}
 
 ProgressLine::ProgressLine(std::string label)
     : label_(std::move(label)),

@@ -59,27 +59,12 @@ CheckRequest check_request(const Scene& scene);
 // Reads and checks `paths` and prints a line on stderr for each warning. Errors: a file cannot be read or is unusable.
 Result<std::vector<CheckedFile>> check_before_use(const std::vector<std::string>& paths, const CheckRequest& request);
 
-// The output of `palpate check`; as text with the command that fits the recordings if they are usable, ready to copy.
-void print_check(const std::vector<CheckedFile>& files, bool json);
-
 // The text of `palpate devices` about the devices on `bus`. Opens each supported one; if that fails, says why and how
 // to fix it, with the udev rule in the folder `assets`.
 std::string plugged_in_text(DeviceBus& bus, const std::string& assets);
 
 // Loads a model file. Errors: as load_model; for a recording, that it is one, and `advice`.
 Result<std::shared_ptr<const FittedModel>> load_model_file(const std::string& path, const std::string& advice);
-
-// `names` with suffixes -2, -3 ... for repeated names.
-std::vector<std::string> distinct_names(const std::vector<std::string>& names);
-
-struct LoadedModel {
-  std::string name;  // unique among the models of one run
-  std::shared_ptr<const FittedModel> model;
-};
-// `names`: one for each file. Empty: the names in the files, or the file names where those are equal. Errors: more than
-// kMaxModels models; another number of names; a file that is no model.
-Result<std::vector<LoadedModel>> load_models(const std::vector<std::string>& paths,
-                                             const std::vector<std::string>& names);
 
 bool is_folder(const std::string& path);
 // `paths` with the recordings (.csv) of each folder in its place, in the order of their names. Errors: a folder that
@@ -142,9 +127,6 @@ auto with_progress(std::string label, const auto& make) {
   ProgressLine line(std::move(label));
   return make(FitControl{[&](double fraction) { return line.update(fraction); }});
 }
-
-// "label  37 %  12 s left"; the remaining time is shown after 2 % and 1 s.
-std::string progress_text(const std::string& label, double fraction, double elapsed_s);
 
 // Advice on what to press next during a recording into `path`: that of the findings of `check` on coverage and holds,
 // and small strokes.
