@@ -165,11 +165,12 @@ void add_report(CLI::App& app, Verbs& verbs) {
                    "Recording that the tests continue: the models begin with the memory of its end (CSV)")
       ->type_name("CSV");
   verb->add_option("--scene", arguments->scene, "Scene that gives the features and the JND line")
-      ->capture_default_str();
+      ->capture_default_str()
+      ->check(scene_name());
   add_page_options(verb, arguments->request)->required();
   verb->add_option("--budget", arguments->budget_percent,
                    "Longest tick of a model that is recommended, in percent of the period of 1 ms")
-      ->check(CLI::Range(1e-6, 100.0))
+      ->check(number_from(1e-6, 100.0))
       ->capture_default_str();
   verb->add_flag("--quick", arguments->request.quick, "Fit the paper's methods and the default only, with 100 centres");
   verbs.emplace_back(verb, [arguments] { return run_report_or_each(*arguments); });

@@ -164,6 +164,7 @@ void add_stroke_options(CLI::App* verb, StudyOptions& options) {
           ->expected(0, 1);
   verb->add_option("--scene", options.strokes_scene, "Scene of the strokes")
       ->capture_default_str()
+      ->check(scene_name())
       ->needs(discriminate);
   verb->add_option("--model", options.models,
                    "The model to compare with the recorded force, or two models [the scene's first]")

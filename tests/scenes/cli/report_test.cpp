@@ -311,6 +311,8 @@ TEST_F(ReportVerb, AFailureIsOneErrorAndLeavesNoFiles) {
     EXPECT_TRUE(test::has_parts(ran.err, parts));
   }
   EXPECT_EQ(run_palpate({"report"}).exit_code, 2);
+  EXPECT_EQ(run_palpate({"report", "--out", "x", "--budget", "nan"}).exit_code, 2);
+  EXPECT_EQ(run_palpate({"report", "--out", "x", "--scene", "nope"}).exit_code, 2);
   EXPECT_TRUE(test::fails(2, {"report", "--test", bad, "--out", other}, {"error: ", "--test", "--train", "; "}));
   EXPECT_EQ(folder_->entries(), before);
   EXPECT_EQ(test::read_text(out() + "/report.json"), written);
