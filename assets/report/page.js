@@ -44,6 +44,8 @@
         }}));
   show('curves-force', 1, ['measured', ...names], ['#009E73', ...colours], 'Force [N]', false);
   show('curves-difference', names.length + 2, names, colours, 'Difference [JND]', true);
+  place('curves-measured').textContent = 'Measured: ' + data.recording + '.';
+  place('curves-measured').style.color = '#009E73';
   const buttons = place('curves-worst');
   for (const model of data.models) {
     const button = document.createElement('button');

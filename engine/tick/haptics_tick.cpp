@@ -250,7 +250,7 @@ namespace {
 constexpr std::size_t kFewestAirRows = 20;
 
 // The standard deviation of the force before the first contact, due to drift of the sensor, inertia and cables. 0 with
-// too few rows.
+// too few rows, and without a contact, where the force may be that of the material.
 double air_deviation_N(const RecordingRow* rows, std::size_t count, double surface_m) {
   double sum = 0.0, squares = 0.0;
   std::size_t air = 0;
@@ -258,7 +258,7 @@ double air_deviation_N(const RecordingRow* rows, std::size_t count, double surfa
     sum += rows[air].force_N;
     squares += rows[air].force_N * rows[air].force_N;
   }
-  if (air < kFewestAirRows) return 0.0;
+  if (air < kFewestAirRows || air == count) return 0.0;
   const auto n = static_cast<double>(air);
   return std::sqrt(std::max(0.0, squares / n - (sum / n) * (sum / n)));
 }

@@ -242,6 +242,9 @@ void print_recording(const ReplayedRecording& replayed, bool all) {
                 replayed.force_zero_N, first.loaded.name.c_str(), 1e2 * first.force_zeroed.within_jnd);
   std::printf("\n");
   print_table(table_text(models_table(replayed, all)), true);
+  if (replayed.contact_samples == 0)
+    std::printf(
+        "note: no sample is beyond the surface of a model or has a certain force, so that nothing is compared\n");
   print_beginning_note(replayed.models);
   print_surface_note(replayed.models);
   print_preload_note(replayed.models);

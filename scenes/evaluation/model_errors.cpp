@@ -270,9 +270,7 @@ Ranking rank(const std::vector<Candidate>& candidates, double budget_ns) {
 }
 
 std::string share_text(double share) {
-  const int decimals = share >= kManyWithin && share < 1.0 ? 1 : 0;
-  const double unit = decimals == 1 ? 1000.0 : 100.0;
-  return fixed(std::floor(unit * share) * 100.0 / unit, decimals) + " %";
+  return share >= 1.0 ? "100 %" : fixed(std::floor(1000.0 * share + 1e-9) / 10.0, 1) + " %";
 }
 
 std::string tick_text(double tick_ns) {
@@ -281,7 +279,7 @@ std::string tick_text(double tick_ns) {
 }
 
 std::string recommendation(const std::string& name, const Candidate& of) {
-  return (of.within_jnd >= kGoodShare ? "Use " : "No model is good enough; the best is ") + name + ": " +
+  return (of.within_jnd >= kGoodShare ? "Use " : "No model is good enough; the rule takes ") + name + ": " +
          share_text(of.within_jnd) + " of the test is within one JND, a tick takes " + tick_text(of.tick_ns) + ".";
 }
 

@@ -210,10 +210,10 @@ inline constexpr const char* kBestRule =
 Ranking rank(const std::vector<Candidate>& candidates, double budget_ns = kBudget_ns);
 
 // The sentence of the rule: "Use NAME: 99.9 % of the test is within one JND, a tick takes 0.33 us." Below
-// kGoodShare it begins "No model is good enough; the best is NAME".
+// kGoodShare it begins "No model is good enough; the rule takes NAME".
 inline constexpr double kGoodShare = 0.9;
 std::string recommendation(const std::string& name, const Candidate& of);
-// "99.9 %", rounded down; two digits below 99 %.
+// "99.9 %", rounded down.
 std::string share_text(double share);
 // "0.33 us"
 std::string tick_text(double tick_ns);

@@ -405,7 +405,7 @@ std::string curves_json(const ReportData& data) {
   const Panel panel = speed_figure(data).panels.front();
   for (std::size_t k = 0; k < panel.series.size(); ++k)
     if (!panel.series[k].name.empty()) dots.push_back({k + 1, panel.series[k].name});
-  const nlohmann::ordered_json about{{"models", models}, {"dots", dots}};
+  const nlohmann::ordered_json about{{"recording", curves.recording->name}, {"models", models}, {"dots", dots}};
   std::string text = about.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
   text.replace(text.size() - 1, 1, ",\"rows\":[" + table + "]}");
   return replaced(text, "<", "\\u003c");  // no end of the element within a name

@@ -76,6 +76,10 @@ class Measurement {
     }
     for (ModelResult& one : models_) finish(one);
     models_.front().errors = evaluation_.no_force.unit_errors();
+    if (models_.front().errors.samples == 0)
+      return Error{
+          "no sample of the test is in contact: none is beyond the surface of a model or has a certain force; " +
+          std::string("test with a recording of the same rig and zero (palpate import FILE --zero contact)")};
     models_.front().moved = evaluation_.no_force.summary();
     std::vector<const PreparedRecording*> tested;
     for (const TestedRecording& one : data_.tested) tested.push_back(one.recording.get());

@@ -20,6 +20,7 @@ namespace {
 using OrderedJson = nlohmann::ordered_json;
 
 constexpr double kMeasuringShare = 0.93;
+constexpr double kAsFast = 0.9;  // times that differ by less are as fast
 
 std::string processor() {
   std::ifstream file("/proc/cpuinfo");
@@ -127,13 +128,25 @@ std::vector<std::string> details(const ReportData& data, const ReportRequest& re
   if (use.untared.samples > 0)
     lines.push_back("With the forces as recorded, whose zero in free air is not subtracted: " +
                     share_text(use.untared.within_jnd) + " within one JND.");
-  if (choice.best != choice.recommended)
-    lines.push_back("As good, but slower: " + compared(data.models[choice.best]) + ".");
-  // Times that differ by less than a tenth are as fast.
-  if (choice.fastest_below_jnd &&
-      data.models[*choice.fastest_below_jnd].time.tick.median_ns < 0.9 * use.time.tick.median_ns)
-    lines.push_back("The fastest whose errors stay below the JND: " + compared(data.models[*choice.fastest_below_jnd]) +
-                    ".");
+  const auto tick_ns = [](const ModelResult& one) { return one.time.tick.median_ns; };
+  if (std::all_of(data.models.begin() + 1, data.models.end(),
+                  [&](const ModelResult& one) { return tick_ns(one) > data.budget_ns; }))
+    lines.push_back("No tick is within the budget of " + tick_text(data.budget_ns) + ", so that it excludes none.");
+  const std::size_t strokes = use.errors.drawn_strokes.units;
+  if (strokes < kLeastUnits)
+    lines.push_back("The test has " + std::to_string(strokes) + (strokes == 1 ? " stroke" : " strokes") +
+                    ", too few for an interval: the figures decide as they are.");
+  if (const ModelResult& best = data.models[choice.best]; choice.best != choice.recommended) {
+    const bool close = std::abs(best.errors.within_jnd - use.errors.within_jnd) < kLeastShare;
+    lines.push_back(
+        (close ? "As good"
+               : "With better figures, which " + std::to_string(strokes) + " strokes do not tell from these") +
+        (kAsFast * tick_ns(best) < tick_ns(use) ? ", and as fast within a tenth: " : ", but slower: ") +
+        compared(best) + ".");
+  }
+  if (choice.fastest_below_jnd && tick_ns(data.models[*choice.fastest_below_jnd]) < kAsFast * tick_ns(use))
+    lines.push_back(
+        "The fastest whose 99 % error is below the JND: " + compared(data.models[*choice.fastest_below_jnd]) + ".");
   for (std::size_t i = 1; i < data.models.size(); ++i) {
     const ModelResult& one = data.models[i];
     const std::string family = family_name(*one.plan);

@@ -184,7 +184,7 @@ TEST(Recommendation, IsOneLine) {
   EXPECT_EQ(recommendation("trend+greedy-100", {0.9998, 0.4, 331.0}),
             "Use trend+greedy-100: 99.9 % of the test is within one JND, a tick takes 0.33 us.");
   EXPECT_EQ(recommendation("voxel", {0.879, 1.8, 12345.0}),
-            "No model is good enough; the best is voxel: 87 % of the test is within one JND, a tick takes 12 us.");
+            "No model is good enough; the rule takes voxel: 87.9 % of the test is within one JND, a tick takes 12 us.");
   EXPECT_EQ(share_text(1.0), "100 %");
 }
 

@@ -22,7 +22,7 @@ TEST(Verdict, ComparesTheRecommendedModelWithTheBestOfTheOtherKind) {
       "");
   EXPECT_EQ(verdict.chosen, 2u);
   EXPECT_EQ(verdict.headline,
-            "Use trend: 99.5 % of the test is within one JND, a tick takes 0.39 us. greedy: 80 %, 1.6 times faster.");
+            "Use trend: 99.5 % of the test is within one JND, a tick takes 0.39 us. greedy: 80.0 %, 1.6 times faster.");
   EXPECT_EQ(verdict.detail, "");
 }
 
@@ -38,8 +38,8 @@ TEST(Verdict, WhereNoneIsGoodEnoughBothErrorsAreNamed) {
   const Verdict verdict = judge({model(0, "greedy", true, 3.1, 390.0), model(1, "trend", false, 1.4, 395.0)}, "");
   EXPECT_EQ(
       verdict.headline,
-      "No model is good enough; the best is trend: 84 % of the test is within one JND, a tick takes 0.4 us. greedy: "
-      "67 %, as fast.");
+      "No model is good enough; the rule takes trend: 84.0 % of the test is within one JND, a tick takes 0.4 us. greedy: "
+      "67.0 %, as fast.");
 }
 
 TEST(Verdict, WithoutATrueForceTheReferenceIsNamed) {
