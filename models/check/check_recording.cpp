@@ -376,7 +376,7 @@ class Checker {
       if (!quarters.empty()) where += (where.empty() ? "" : "; ") + bands[band] + " at " + quarters + " mm";
     }
     const int cells = static_cast<int>(kDepthQuarters * kSpeedBands);
-    add("explored", Severity::note, static_cast<double>(cells - empty) / cells,
+    add("explored", empty < cells ? Severity::note : Severity::warning, static_cast<double>(cells - empty) / cells,
         words("the strokes cover %d of %d cells of depth and speed", cells - empty, cells),
         where.empty() ? "" : std::string("record next: ").append(where));
   }
