@@ -6,8 +6,6 @@
 #include <numbers>
 #include <utility>
 
-#include "engine/base/cycle_clock.h"
-
 namespace palpate {
 namespace {
 
@@ -63,7 +61,6 @@ LiveModels::LiveModels(std::uint32_t set_id, const SensorSpec& sensor, const For
     stiffness_N_per_m[i] = impedance.stiffness_N_per_m;
     damping_Ns_per_m[i] = impedance.damping_Ns_per_m;
   }
-  tick.time_evaluations(true);
 }
 
 LiveTick::LiveTick(Device& device, ModelSlot<LiveModels>& slot, const LiveTickSettings& settings)
@@ -75,8 +72,7 @@ LiveTick::LiveTick(Device& device, ModelSlot<LiveModels>& slot, const LiveTickSe
       limiter_(device.limits()),
       source_(settings.source),
       models_(std::make_unique<LiveModels>(0, device.sensor(), ForceModels{})),
-      recorded_(std::make_unique<RecordedRing>()),
-      ns_per_cycle_(ns_per_cycle()) {}
+      recorded_(std::make_unique<RecordedRing>()) {}
 
 void LiveTick::warm_up() noexcept {
   update_models();
@@ -223,10 +219,6 @@ const LoopSnapshot& LiveTick::run(double now_s, const LoopControls& controls) no
   render(step_s);
   snapshot_.faults_latched |= snapshot_.faults;
   snapshot_.device_faults_latched |= snapshot_.device.faults;
-  for (std::size_t i = 0; i < models_->tick.model_count(); ++i) {
-    snapshot_.evaluation_ns[i] =
-        static_cast<float>(ns_per_cycle_ * static_cast<double>(models_->tick.evaluation_cycles(i)));
-  }
   return snapshot_;
 }
 

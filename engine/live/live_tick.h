@@ -5,7 +5,6 @@
 // the haptics thread; they are wait-free, allocate nothing, lock nothing and never throw.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <limits>
 #include <memory>
@@ -105,7 +104,6 @@ struct LoopSnapshot {
   bool dead_man_released = false;   // the dead-man switch is released: no force
   bool fading = false;              // between two models
   bool restarted = false;           // a new stream began in this tick
-  std::array<float, kMaxModels> evaluation_ns{};
 };
 static_assert(std::is_trivially_copyable_v<LoopSnapshot>);
 
@@ -167,8 +165,7 @@ class LiveTick {
   std::uint32_t outgoing_selected_ = 0;
   LoopControls controls_;  // of this tick
   LoopSnapshot snapshot_;
-  std::unique_ptr<RecordedRing> recorded_;  // 2.4 MB: too much for a stack
-  double ns_per_cycle_;
+  std::unique_ptr<RecordedRing> recorded_;                        // 2.4 MB: too much for a stack
   double sampled_s_ = -std::numeric_limits<double>::infinity();   // time of the tick that read the last sample
   double assessed_s_ = -std::numeric_limits<double>::infinity();  // of the last HapticsTick::assess
   bool started_ = false;

@@ -7,7 +7,6 @@
 #include <utility>
 #include <vector>
 
-#include "engine/base/cycle_clock.h"
 #include "engine/tick/jnd.h"
 #include "engine/tick/motion_estimator.h"
 
@@ -192,18 +191,12 @@ void HapticsTick::update_features(const MotionEstimate& motion) noexcept {
 }
 
 void HapticsTick::evaluate_models() noexcept {
-  // The models take turns in being first: the first one after a pause runs with cold caches, and no model should look
-  // slower because of its position.
-  const std::size_t first = models_.empty() ? 0 : static_cast<std::size_t>(snapshot_.tick % models_.size());
-  for (std::size_t k = 0; k < models_.size(); ++k) {
-    const std::size_t i = first + k < models_.size() ? first + k : first + k - models_.size();
+  for (std::size_t i = 0; i < models_.size(); ++i) {
     const FeatureVector& vector = filters_[filter_of_[i]].vector();
     double& force_N = snapshot_.force_N[i];
     force_N = 0.0;
     if (!vector.in_contact) continue;  // the surface of a model may be deeper than that of another
-    const std::uint64_t before = timed_ ? cycle_count() : 0;
     force_N = models_[i]->force(vector.values.data());
-    if (timed_) cycles_[i] = cycle_count() - before;
     if (std::isfinite(force_N)) continue;
     force_N = 0.0;
     snapshot_.fault = TickFault::force_not_finite;

@@ -108,12 +108,6 @@ class HapticsTick {
   // than 5 s ago, otherwise it is at rest at the last sample. Requires the same sensor. Wait-free.
   void continue_from(const HapticsTick& before) noexcept;
 
-  // Slow side: from now on `step` measures the time of each force in units of engine/base/cycle_clock.h, which
-  // takes some 10 ns each.
-  void time_evaluations(bool timed) noexcept { timed_ = timed; }
-  // The duration of the last evaluation of model `index`; 0 before the first. Out of contact it does not change.
-  std::uint64_t evaluation_cycles(std::size_t index) const noexcept { return cycles_[index]; }
-
   // The result of the last `step`.
   const TickSnapshot& snapshot() const noexcept { return snapshot_; }
 
@@ -136,11 +130,10 @@ class HapticsTick {
   std::vector<FeatureFilter> filters_;
   std::vector<ExtremeStates> extremes_;  // for each filter
   std::vector<std::size_t> filter_of_;   // for each model
-  std::array<std::uint64_t, kMaxModels> cycles_{};
-  ToolSample sample_;         // last sample
-  double rehearsed_N_ = 0.0;  // result of `rehearse`, so that the compiler keeps it
+  ToolSample sample_;                    // last sample
+  double rehearsed_N_ = 0.0;             // result of `rehearse`, so that the compiler keeps it
   TickSnapshot snapshot_;
-  bool started_ = false, timed_ = false;
+  bool started_ = false;
   bool told_ = false;  // the filters have the memory of `start_after`
 };
 
