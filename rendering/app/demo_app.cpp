@@ -252,8 +252,6 @@ WindowActions DemoApp::make_actions() {
   actions.scale = [this](const ForceScale& scale) { session_->controls().scale = scale; };
   actions.zero_device = [this] { session_->start_zeroing(); };
   actions.look_for_devices = [this] { files_.look_for_devices(); };
-  actions.seek = [this](double at_s) { session_->replay()->seek(at_s); };
-  actions.set_speed = [this](double speed) { session_->replay()->set_speed(speed); };
   actions.move_surface = [this](bool moved) { session_->move_surface(moved); };
   actions.use_scene = [this](const std::string& scene) { use_material(scene, {}, first_device_); };
   actions.open = [this](const std::string& path) { drop_files({path}); };
@@ -262,14 +260,16 @@ WindowActions DemoApp::make_actions() {
     use_device(device);
   };
   actions.use_recording_roles = [this] { use_recording_roles(); };
-  actions.save = [this](int what) { save(what); };
+  actions.exports = {{"Picture (PNG)", [this] { picture_ = files_.picture_path(); }},
+                     {"Curves (SVG, CSV)", [this] { files_.save_curves(*session_, shown_, curves_.columns()); }},
+                     {"Table (CSV)", [this] { files_.save_table(shown_); }},
+                     {"Copy the table",
+                      [this] {
+                        glfwSetClipboardString(window_->handle(), table_csv(shown_.models).c_str());
+                        notify("the table is in the clipboard", false);
+                      }},
+                     {"Active model (JSON)", [this] { files_.save_model(*session_); }}};
   actions.lift_tool = [this] { lift_tool(); };
-  actions.hold_tool = [this] {
-    if (session_->tool_input() != nullptr) session_->tool_input()->nudge(0.0, steady_now_s());
-  };
-  actions.release_tool = [this] {
-    if (session_->tool_input() != nullptr) session_->tool_input()->release();
-  };
   actions.reset_figures = [this] { session_->reset_figures(); };
   return actions;
 }

@@ -183,7 +183,6 @@ class DemoApp {
   void use_worst(std::size_t slot);
   void leave_worst();
   void stop_or_go_on();
-  void save(int what);
   WindowActions make_actions();
   void read_notices();
   bool needs_texts(double now_s);

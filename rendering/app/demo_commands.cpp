@@ -231,17 +231,6 @@ void DemoApp::leave_worst() {
   curves_ = {};
 }
 
-void DemoApp::save(int what) {
-  if (what == 0) picture_ = files_.picture_path();
-  if (what == 1) files_.save_curves(*session_, shown_, curves_.columns());
-  if (what == 2) files_.save_table(shown_);
-  if (what == 3) {
-    glfwSetClipboardString(window_->handle(), table_csv(shown_.models).c_str());
-    notify("the table is in the clipboard", false);
-  }
-  if (what == 4) files_.save_model(*session_);
-}
-
 void DemoApp::close_windows() {
   view_.dialogs = {};
   view_.details = false;

@@ -129,7 +129,7 @@ BlockPose DemoApp::model_pose(std::size_t slot, BlockPose pose) const {
     pose.dent_m = static_cast<float>(model.dent_m);
     pose.error_over_jnd = static_cast<float>(model.recent_error_over_jnd);
   }
-  const bool exaggerated = view_.exaggerated && !view_.exhibit.on && std::isfinite(reference_N);
+  const bool exaggerated = view_.exaggerated && std::isfinite(reference_N);
   const float shown_N = exaggerated ? reference_N + kExaggeration * (force_N - reference_N) : force_N;
   pose.force_N = std::isfinite(shown_N) ? std::max(0.0F, shown_N) : 0.0F;
   pose.arrow = slot_colour(models, slot, view_.settings.theme);
@@ -142,9 +142,7 @@ BlockPose DemoApp::model_pose(std::size_t slot, BlockPose pose) const {
     pose.truth =
         is_model ? slot_colour(models, models.reference, view_.settings.theme) : reference_colour(view_.settings.theme);
   }
-  if (view_.exhibit.blind) pose.arrow = palette(view_.settings.theme).text;
-  // What is not pressed has no error.
-  pose.shows_error = !view_.exhibit.blind && models.now.in_contact;
+  pose.shows_error = models.now.in_contact;  // what is not pressed has no error
   return pose;
 }
 
@@ -154,7 +152,7 @@ BlockPose DemoApp::reference_pose(BlockPose pose) const {
   const float reference_N = shown_.models.now.reference_N;
   if (active != nullptr && !shown_.models.stands) pose.dent_m = static_cast<float>(active->dent_m);
   pose.force_N = std::isfinite(reference_N) ? reference_N : 0.0F;
-  pose.arrow = view_.exhibit.blind ? palette(view_.settings.theme).text : reference_colour(view_.settings.theme);
+  pose.arrow = reference_colour(view_.settings.theme);
   pose.shows_error = false;
   return pose;
 }

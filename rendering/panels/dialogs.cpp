@@ -113,10 +113,10 @@ void draw_scene_list(const WindowView& shown, ViewState& view, const WindowActio
 
 void draw_export_list(ViewState& view, const WindowActions& actions) {
   if (!begin_dialog("Export", view.dialogs, Dialog::exports)) return;
-  for (int i = 0; i < static_cast<int>(std::size(kExports)); ++i) {
-    if (!list_entry(kExports[i], i == 0)) continue;
+  for (const auto& one : actions.exports) {
+    if (!list_entry(one.first, &one == &actions.exports.front())) continue;
     view.dialogs.open = Dialog::none;
-    actions.save(i);
+    one.second();
   }
   ImGui::End();
 }

@@ -165,7 +165,7 @@ bool Exhibit::update(const WindowView& shown, ViewState& view, const WindowActio
   const bool here = shown.health.newest.loop_time_s - moved_s_ < times_.stay_s;
   const bool left = visitor_ && !here;
   visitor_ = here;
-  if (left) forget(view, actions);
+  if (left) forget(shown, view, actions);
   if (game_.state() == State::attract) choose_attraction(shown);
   read_ticks(shown);
   begin_reveal(shown);
@@ -174,8 +174,7 @@ bool Exhibit::update(const WindowView& shown, ViewState& view, const WindowActio
   view.exhibit.tool_is_held = game_.state() != State::attract && !pressing;
   if (view.exhibit.tool_is_held) actions.lift_tool();
   // During a round the simulated hand must not press, even if the visitor does not move.
-  if (pressing) actions.hold_tool();
-  view.exhibit.blind = game_.state() == State::press;
+  if (pressing && shown.tool != nullptr) shown.tool->nudge(0.0, steady_now_s());
   view.exhibit.close_up = game_.state() == State::reveal;
   view.settings.blocks = 2;
   if (knows_pair()) actions.select(game_.state() == State::press ? game_.rendered().slot : computer().slot);
@@ -187,7 +186,7 @@ void Exhibit::note_device(const WindowView& shown) {
   const double at_m = shown.health.newest.tick.position_m;
   if (std::abs(at_m - device_at_m_) < kDeviceMoves_m) return;
   device_at_m_ = at_m;
-  if (shown.has_tool ? !shown.hand_explores : shown.renders_force) moved_s_ = shown.health.newest.loop_time_s;
+  if (shown.tool != nullptr ? !shown.hand_explores : shown.renders_force) moved_s_ = shown.health.newest.loop_time_s;
 }
 
 // Passes on every tick, independent of the frame rate.
@@ -265,11 +264,10 @@ std::vector<BlockPose> Exhibit::shown_poses(const WindowView& shown, Theme theme
     pose->force_N = std::max(0.0F, std::isfinite(pose->force_N) ? pose->force_N : 0.0F);
   if (!std::isfinite(model.error_over_jnd)) model.error_over_jnd = 0.0F;
   // Nothing gives the answer away.
-  const bool blind = game_.state() == State::press;
-  truth.arrow = blind ? palette(theme).text : colour_of_truth(shown, theme);
-  model.arrow = blind ? palette(theme).text : slot_colour(shown.models, computer().slot, theme);
+  truth.arrow = is_blind() ? palette(theme).text : colour_of_truth(shown, theme);
+  model.arrow = is_blind() ? palette(theme).text : slot_colour(shown.models, computer().slot, theme);
   truth.shows_error = false;
-  model.shows_error = !blind && model.dent_m > 0.0F;
+  model.shows_error = !is_blind() && model.dent_m > 0.0F;
   return computer_is_left() ? std::vector{model, truth} : std::vector{truth, model};
 }
 
@@ -278,14 +276,14 @@ void Exhibit::begin(const WindowView& shown) {
   (void)game_.begin(ready_models(shown), has_reference(shown), shown.renders_force);
 }
 
-void Exhibit::forget(ViewState& view, const WindowActions& actions) {
+void Exhibit::forget(const WindowView& shown, ViewState& view, const WindowActions& actions) {
   game_.reset();
   ready_ = repeats_ = farewell_ = false;
   best_ = worst_ = {};
   language_ = 0;
   host_ = false;
   actions.reset_figures();
-  actions.release_tool();
+  if (shown.tool != nullptr) shown.tool->release();
   view.time.run();
 }
 

@@ -86,6 +86,8 @@ class Exhibit {
   const ExhibitTrace& attract_trace() const noexcept { return shows_worst() ? worst_ : best_; }
   // Whether the last stroke is shown again with the worst model.
   bool shows_worst() const noexcept { return game_.state() == ExhibitGame::State::attract && repeats_; }
+  // Hides which block is the computer's.
+  bool is_blind() const noexcept { return game_.state() == ExhibitGame::State::press; }
   const ExhibitTally& tally() const noexcept { return tally_; }
   // The middles of the buttons of the last frame, by their keys.
   const std::map<std::string, ImVec2>& buttons() const noexcept { return buttons_; }
@@ -96,7 +98,7 @@ class Exhibit {
 
  private:
   struct Screens;
-  void forget(ViewState& view, const WindowActions& actions);
+  void forget(const WindowView& shown, ViewState& view, const WindowActions& actions);
   void read_ticks(const WindowView& shown);
   void choose_attraction(const WindowView& shown);
   void note_device(const WindowView& shown);

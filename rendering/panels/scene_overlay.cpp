@@ -21,8 +21,8 @@ float buttons_height(const UiStyle& style) {
   return std::max(button_px(style), 2.4F * height_of(style.fonts().body)) + 2.0F * ImGui::GetStyle().WindowPadding.y;
 }
 float replay_height(const WindowView& shown, const UiStyle& style) {
-  if (!shown.replay) return 0.0F;
-  return button_px(style) + (shown.replay->surface_m != 0.0 ? 2.7F : 1.0F) * height_of(style.fonts().body);
+  if (shown.replay == nullptr) return 0.0F;
+  return button_px(style) + (shown.surface_m != 0.0 ? 2.7F : 1.0F) * height_of(style.fonts().body);
 }
 // Whether notes have room beside the big number; else they are below the headline.
 bool has_corner(const UiStyle& style, const SceneArea& area) {
@@ -273,7 +273,7 @@ struct Overlay {
   }
 
   void draw_replay_bar(float lift) const {
-    const ReplayView& replay = *shown.replay;
+    ReplayControl& replay = *shown.replay;
     ImGui::SetNextWindowPos({area.at.x + 2.0F, area.at.y + area.size.y - lift}, ImGuiCond_Always, {0.0F, 1.0F});
     ImGui::SetNextWindowSize({area.size.x - 4.0F, 0.0F});
     ImGui::Begin("over replay", nullptr, kFloating & ~ImGuiWindowFlags_AlwaysAutoResize);
@@ -286,23 +286,23 @@ struct Overlay {
     }
     // The numbers are beside the sliders, because the grip would hide them.
     ImGui::SetNextItemWidth(0.40F * area.size.x);
-    auto at_s = static_cast<float>(replay.playhead_s);
-    if (ImGui::SliderFloat("##at", &at_s, 0.0F, static_cast<float>(replay.duration_s), "")) actions.seek(at_s);
+    auto at_s = static_cast<float>(replay.playhead_s());
+    if (ImGui::SliderFloat("##at", &at_s, 0.0F, static_cast<float>(replay.duration_s()), "")) replay.seek(at_s);
     tip("Position in the recording");
     ImGui::SameLine();
-    ImGui::Text("%5.1f of %.1f s", replay.playhead_s, replay.duration_s);
+    ImGui::Text("%5.1f of %.1f s", replay.playhead_s(), replay.duration_s());
     ImGui::SameLine();
     ImGui::SetNextItemWidth(-4.5F * ImGui::GetFontSize());
-    auto speed = static_cast<float>(replay.speed);
-    if (ImGui::SliderFloat("##speed", &speed, 0.05F, 10.0F, "", ImGuiSliderFlags_Logarithmic)) actions.set_speed(speed);
+    auto speed = static_cast<float>(replay.speed());
+    if (ImGui::SliderFloat("##speed", &speed, 0.05F, 10.0F, "", ImGuiSliderFlags_Logarithmic)) replay.set_speed(speed);
     tip("Speed of the replay");
     ImGui::SameLine();
-    ImGui::Text("%.2f x", replay.speed);
+    ImGui::Text("%.2f x", replay.speed());
     ImGui::PopStyleVar();
-    if (replay.surface_m != 0.0) {
-      bool moved = replay.surface_moved;
+    if (shown.surface_m != 0.0) {
+      bool moved = shown.surface_moved;
       const std::string label =
-          "surface " + fixed(1e3 * replay.surface_m, 2) + " mm from that of the models; move it there";
+          "surface " + fixed(1e3 * shown.surface_m, 2) + " mm from that of the models; move it there";
       if (ImGui::Checkbox(label.c_str(), &moved)) actions.move_surface(moved);
       tip("On: the surface is moved to where the models fit the recording best. Off: the positions are as recorded.");
     }
@@ -322,7 +322,7 @@ struct Overlay {
   // text in the middle.
   void draw_request() const {
     std::string words = shown.device_words;
-    if (models().slots.empty() && !shown.replay) {
+    if (models().slots.empty() && shown.replay == nullptr) {
       words = "No model yet, and no virtual material stands in for \"" + shown.title +
               "\".\nDrop a recording (CSV) here to fit it or to replay it, or a model file (O lists them).\n"
               "S chooses a scene with a material.";
@@ -380,7 +380,7 @@ struct Overlay {
       if (view.scales_force) top_px = draw_feel(top_px);
     }
     draw_recording();
-    if (shown.replay) draw_replay_bar(buttons);
+    if (shown.replay != nullptr) draw_replay_bar(buttons);
     if (!exhibit) draw_buttons();
     if (!view.dialogs.recording_roles.any()) draw_request();
     draw_notes(left_px, area.at.y + area.size.y - bars, top_px);
@@ -391,7 +391,7 @@ struct Overlay {
 
 std::string press_hint(const WindowView& shown, ViewState& view) {
   constexpr double kPressed_N = 0.5;
-  if (!shown.has_tool || (shown.models.slots.empty() && !shown.has_material)) return {};
+  if (shown.tool == nullptr || (shown.models.slots.empty() && !shown.has_material)) return {};
   if (shown.hand_explores) return "The hand moves by itself. Press the mouse button on a block and pull down.";
   if (shown.health.newest.rendered_N > kPressed_N) view.has_pressed = true;
   return view.has_pressed ? "" : "Press the mouse button on a block and pull down; let go to lift the probe.";

@@ -181,16 +181,15 @@ WindowView window_view(const LiveSession& session, const ViewState& view) {
   shown.description = session.scene().description;
   shown.device_words = session.device_words();
   shown.has_material = session.scene().has_material();
-  shown.has_tool = session.tool_input() != nullptr;
-  shown.hand_explores = shown.has_tool && session.tool_input()->hand_is_exploring();
+  shown.tool = session.tool_input();
+  shown.hand_explores = shown.tool != nullptr && shown.tool->hand_is_exploring();
   shown.renders_force = session.renders_force();
   shown.settled = session.models().all_settled();
   shown.scale = session.controls().scale;
   shown.recording = session.recording();
-  if (const ReplayControl* replay = session.replay()) {
-    shown.replay = ReplayView{replay->playhead_s(), replay->duration_s(),     replay->speed(),
-                              replay->paused(),     session.test().found_m(), session.test().moved()};
-  }
+  shown.replay = session.replay();
+  shown.surface_m = shown.replay != nullptr ? session.test().found_m() : 0.0;
+  shown.surface_moved = session.test().moved();
   const std::size_t blocks = view.settings.blocks;
   const bool has_truth = session.comparison().reference() != ReferenceKind::model;
   if (view.material && has_truth && blocks == 1) {
@@ -199,12 +198,12 @@ WindowView window_view(const LiveSession& session, const ViewState& view) {
     shown.blocks = slots_of_blocks(shown.models, has_truth && blocks > 1, blocks == 2 ? 3 : blocks);
   }
   shown.reference_block = session.comparison().reference() == ReferenceKind::truth ? "the true material"
-                          : session.replay() != nullptr                            ? "as recorded"
+                          : shown.replay != nullptr                                ? "as recorded"
                                                                                    : "the real block";
   shown.reference_words = session.reference_words();
   shown.usual_force_N = kUsualOverStrongest * session.scene().strongest_press_N;
   shown.usual_depth_m = session.models().trained_depth_m();
-  const bool stands = session.replay() != nullptr && session.replay()->paused() && shown.history->size() > 0;
+  const bool stands = shown.replay != nullptr && shown.replay->paused() && shown.history->size() > 0;
   shown.now_s = stands ? (*shown.history)[shown.history->size() - 1].loop_time_s : steady_now_s();
   return shown;
 }

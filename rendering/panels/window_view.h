@@ -181,7 +181,6 @@ struct Dialogs {
 // The exhibit's control of the picture.
 struct ExhibitState {
   bool on = false;
-  bool blind = false;         // hides which block is the computer's
   bool close_up = false;      // the camera is nearer
   bool tool_is_held = false;  // keeps the tool out of the block; the mouse has no effect
 };
@@ -275,26 +274,21 @@ struct HealthView {
   std::string device_name;
 };
 
-struct ReplayView {
-  double playhead_s = 0.0, duration_s = 0.0, speed = 1.0;
-  bool paused = false;
-  double surface_m = 0.0;      // offset at which the models fit best; 0: none
-  bool surface_moved = false;  // it is subtracted
-};
-
 struct WindowView {
   ModelsView models;
   HealthView health;
   std::string scene, title, description;
   std::string device_words;    // what the user has to do so that the device renders force; may be empty
   bool has_material = false;   // models can be fitted
-  bool has_tool = false;       // a mouse can move the tool
+  ToolInput* tool = nullptr;   // null: a mouse cannot move the tool
   bool hand_explores = false;  // the tool moves by itself
   bool renders_force = false;
   bool settled = false;  // no model is still to be fitted
   ForceScale scale;
   RecordingStatus recording;
-  std::optional<ReplayView> replay;
+  ReplayControl* replay = nullptr;  // null: nothing is replayed
+  double surface_m = 0.0;           // of the replay: the offset at which the models fit best; 0: none
+  bool surface_moved = false;       // it is subtracted
   // The slots that have a block, in ascending order. If there is too little room, the active model and that of the
   // verdict come first. With several blocks the last one is kReferenceBlock if the reference is no model.
   std::vector<std::size_t> blocks;
@@ -316,20 +310,14 @@ struct WindowActions {
   OfText add_model;                             // the name of a method with a size
   std::function<void(const ForceScale&)> scale;
   std::function<void()> zero_device, look_for_devices;
-  std::function<void(double)> seek, set_speed;  // of a replay
   std::function<void(bool)> move_surface;
   OfText use_scene, open, use_device;
-  std::function<void()> use_recording_roles;  // trains and tests as Dialogs::recording_roles says
-  std::function<void(int)> save;              // an index of kExports
-  // Of the exhibit: keeps the tool out of the block, keeps the simulated hand from pressing, gives the tool back to it,
-  // clears the errors and the alarms.
-  std::function<void()> lift_tool, hold_tool, release_tool, reset_figures;
-  std::function<std::vector<WindowChoice>()> choices;    // of the dialog View
-  const std::vector<WindowCommand>* commands = nullptr;  // for the buttons and the list of keys
+  std::function<void()> use_recording_roles;           // trains and tests as Dialogs::recording_roles says
+  std::function<void()> lift_tool, reset_figures;      // of the exhibit: out of the block; clears errors and alarms
+  std::function<std::vector<WindowChoice>()> choices;  // of the dialog View
+  std::vector<std::pair<const char*, std::function<void()>>> exports;  // what can be saved, in this order
+  const std::vector<WindowCommand>* commands = nullptr;                // for the buttons and the list of keys
 };
-// What can be saved, in the order of the dialog Export.
-inline constexpr const char* kExports[] = {"Picture (PNG)", "Curves (SVG, CSV)", "Table (CSV)", "Copy the table",
-                                           "Active model (JSON)"};
 
 WindowView window_view(const LiveSession& session, const ViewState& view);
 

@@ -119,7 +119,7 @@ class ExhibitTest : public test::DemoWindowTest {
     for (int round = 1; round <= 3; ++round) {
       ASSERT_EQ(state(), State::press);
       EXPECT_TRUE(says("Round " + std::to_string(round) + " of 3"));
-      EXPECT_TRUE(app_->view().exhibit.blind);
+      EXPECT_TRUE(app_->exhibit().is_blind());
       EXPECT_FALSE(shows("1")) << "no question before a press";
       ASSERT_TRUE(until([&] {
         if (!game().can_answer()) stroke();
@@ -128,7 +128,7 @@ class ExhibitTest : public test::DemoWindowTest {
       EXPECT_GT(game().trace().columns().size(), 10u) << "what was pressed was drawn";
       press_button(round == 3 ? "2" : "1");
       ASSERT_EQ(state(), State::reveal);
-      EXPECT_FALSE(app_->view().exhibit.blind);
+      EXPECT_FALSE(app_->exhibit().is_blind());
       expect_released();
       press_button("Enter");
     }
@@ -334,7 +334,7 @@ TEST_F(ExhibitTest, AForceDeviceIsComparedBlindly) {
   pictures_ = "felt-";
   press(GLFW_KEY_1);
   ASSERT_EQ(state(), State::press);
-  EXPECT_TRUE(app_->view().exhibit.blind);
+  EXPECT_TRUE(app_->exhibit().is_blind());
   stroke_device();
   EXPECT_FALSE(game().can_answer()) << "both have to be pressed";
   const std::size_t one = app_->session().models().selected();

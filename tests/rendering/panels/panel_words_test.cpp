@@ -130,7 +130,9 @@ TEST(PanelWords, TwoModelsAreComparedAloneAndASceneThatCannotMoveSaysNothing) {
   EXPECT_EQ(models.drawn(), (std::vector<std::size_t>{2, 0}));
   WindowView shown;
   ViewState view;
-  shown.has_tool = shown.hand_explores = true;
+  MouseDevice mouse;
+  shown.tool = &mouse;
+  shown.hand_explores = true;
   EXPECT_EQ(press_hint(shown, view), "") << "no model, no material";
   shown.has_material = true;
   EXPECT_NE(press_hint(shown, view).find("pull down"), std::string::npos);
