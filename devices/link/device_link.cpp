@@ -586,10 +586,7 @@ void StreamMonitor::update(ReportVerdict verdict, const DeviceReading& reading, 
   move(reading, now_s);
   if (!connected_ && protocol_.absolute) ++state_.streams;
   if (!connected_ || state_.counts != before) still_since_s_ = now_s;
-  if (!connected_ || reading.confirmed != last_.confirmed) {
-    state_.confirmed = reading.confirmed;
-    state_.confirmed_at_s = now_s;
-  }
+  if (!connected_ || reading.confirmed != last_.confirmed) state_.confirmed_at_s = now_s;
   const double before_s = state_.sample_time_s;
   state_.sample_time_s = std::max(read_time_s_, before_s + kLeastStep_s);
   if (connected_) {

@@ -242,8 +242,7 @@ struct MonitorState {
   double sample_time_s = 0.0;  // host clock, strictly increasing
   double zero_counts = 0.0;    // counts at the rest position
   double transient_until_s = 0.0;
-  double confirmed_at_s = 0.0;  // time of the last change of `confirmed`
-  std::uint32_t confirmed = 0;  // sequence of the last confirmed command
+  double confirmed_at_s = 0.0;  // time of the last change of DeviceReading::confirmed
   std::uint32_t transient = 0;  // bits of device_fault that end at transient_until_s
   std::uint32_t lost = 0;       // bits of device_fault that end when the device is zeroed
   std::uint32_t streams = 0;    // number of streams; one begins when the position becomes known or jumps

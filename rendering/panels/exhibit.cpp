@@ -34,22 +34,6 @@ bool has_reference(const WindowView& shown) {
   return shown.models.compared && shown.models.reference == kReferenceBlock;
 }
 
-ExhibitTick tick_of(const HistoryPoint& point, const ExhibitLineUp& line_up) {
-  ExhibitTick tick;
-  tick.loop_time_s = point.loop_time_s;
-  tick.position_m = point.position_m;
-  tick.in_contact = point.in_contact;
-  tick.out_of_domain = point.out_of_domain;
-  tick.true_N = line_up.truth ? point.force_N[line_up.truth->slot] : point.reference_N;
-  for (std::size_t i = 0; i < line_up.levels.size(); ++i) {
-    const std::size_t slot = line_up.levels[i].slot;
-    tick.model_N[i] = point.force_N[slot];
-    tick.over_jnd[i] = point.sustained_over_jnd[slot];
-    if (line_up.truth) tick.over_jnd[i] -= point.sustained_over_jnd[line_up.truth->slot];
-  }
-  return tick;
-}
-
 // In columns: the longest parts of the press before and after the largest difference that are shown, and the approach
 // before it.
 constexpr std::size_t kBefore = static_cast<std::size_t>(1.0 / ExhibitTrace::kColumn_s);
@@ -194,7 +178,7 @@ void Exhibit::read_ticks(const WindowView& shown) {
   const ForceHistory& history = *shown.history;
   const std::size_t first = history.first_at(std::nextafter(seen_s_, std::numeric_limits<double>::infinity()));
   for (std::size_t next = first; knows_pair() && next < history.size(); ++next) {
-    const ExhibitTick tick = tick_of(history[next], line_up());
+    const HistoryPoint& tick = history[next];
     if (game_.state() != State::attract) {
       game_.add(tick);
       continue;
@@ -207,8 +191,8 @@ void Exhibit::read_ticks(const WindowView& shown) {
       reveal_.start(worst_, shown.models.jnd, 1.0, shown.health.newest.loop_time_s);
       continue;
     }
-    best_.add(tick, attraction_.levels.size() - 1);
-    worst_.add(tick, 0);
+    best_.add(tick, attraction_, attraction_.levels.size() - 1);
+    worst_.add(tick, attraction_, 0);
   }
   if (history.size() > 0) seen_s_ = history[history.size() - 1].loop_time_s;
 }
@@ -253,11 +237,11 @@ std::vector<BlockPose> Exhibit::shown_poses(const WindowView& shown, Theme theme
     model.force_N = static_cast<float>(reveal_.model_N(moment));
     model.error_over_jnd = static_cast<float>(std::abs(moment.over_jnd));
   } else {
-    const ExhibitTick now = tick_of(shown.models.now, line_up());
-    truth.tool_m = shown.models.now.position_m;
-    truth.force_N = static_cast<float>(now.true_N);
-    model.force_N = static_cast<float>(now.model_N[level()]);
-    model.error_over_jnd = static_cast<float>(std::abs(now.over_jnd[level()]));
+    const HistoryPoint& now = shown.models.now;
+    truth.tool_m = now.position_m;
+    truth.force_N = static_cast<float>(line_up().true_N(now));
+    model.force_N = now.force_N[computer().slot];
+    model.error_over_jnd = static_cast<float>(std::abs(line_up().over_jnd(now, level())));
   }
   truth.dent_m = model.dent_m = std::max(0.0F, model.tool_m = truth.tool_m);
   for (BlockPose* pose : {&truth, &model})

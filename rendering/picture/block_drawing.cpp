@@ -13,7 +13,9 @@ namespace {
 
 // In radii of the tool as drawn.
 constexpr float kTrueArrow = 1.75F, kTrueArrowWidth = 0.13F;
-constexpr float kDomeRadius = 2.0F;  // a visible width
+constexpr float kDomeRadius = 2.0F;    // a visible width
+constexpr float kLongestArrow = 1.3F;  // in lengths of the tool
+constexpr float kLine = 0.0055F;       // in heights of the picture
 // Share of transmitted light, gloss, pores and lines of the grid, in the order of Finish.
 struct Material {
   float translucent, gloss, pores, grid;
@@ -188,7 +190,8 @@ void BlockView::draw_moving(const BlockPose& pose) const {
 
 // The surface in the cut: that of the true material where it is known, else the bright edge of this one.
 void BlockView::draw_line(const BlockPose& pose) const {
-  const float width = line_px(), rim = std::max(0.8F, 0.25F * width);
+  const float width = std::max(kLeastLine_px, kLine * static_cast<float>(still_.height));
+  const float rim = std::max(0.8F, 0.25F * width);
   const Shader& shader = shaders_.line;
   begin(shader);
   set_dent(shader, pose.shows_truth ? pose.true_dent_m : pose.dent_m);
@@ -202,7 +205,8 @@ void BlockView::draw_line(const BlockPose& pose) const {
 
 void BlockView::draw_arrow(float from_middle, float force_N, float half_width, const Rgb& colour) const {
   if (force_N < kShortestArrow_N) return;
-  const float radius = radius_m_ * px_per_m_, height = arrow_px(force_N);
+  const float radius = radius_m_ * px_per_m_;
+  const float height = px_per_m_ * std::min(arrow_m_per_N_ * force_N, kLongestArrow * kToolLength * radius_m_);
   const float outline = outline_px();
   const float half = std::min(std::max(1.2F, half_width * radius), height / 5.0F);
   const Shader& shader = shaders_.arrow;

@@ -21,7 +21,6 @@ constexpr float kYaw_rad = 0.16F, kPitch_rad = 0.30F;
 constexpr float kLift_m = 0.012F;         // room above the tool between presses
 constexpr float kLabel = 0.075F;          // height of the text below a block, in heights of the picture
 constexpr float kStrongestArrow = 0.85F;  // for the scene's strongest press, in lengths of the tool
-constexpr float kLongestArrow = 1.3F;
 constexpr float kOutline = 0.0019F, kLeastOutline_px = 0.75F;  // width of outlines, in heights of the picture
 // The depth of a dent decreases to 0 up to this share of the distance to the nearest side (dent.glsl).
 constexpr float kMoves = 0.9F;
@@ -52,14 +51,6 @@ std::vector<glm::vec2> handle_profile(float top) {
     profile.emplace_back(std::max(1e-4F, 0.86F * std::cos(angle)), top - 0.7F + 0.7F * std::sin(angle));
   }
   return profile;
-}
-
-Viewport grown(const glm::vec2& low, const glm::vec2& high, const glm::vec2& most) {
-  constexpr float kMargin_px = 2.0F;  // of antialiasing
-  const glm::vec2 from = glm::clamp(glm::floor(low - kMargin_px), glm::vec2(0.0F), most);
-  const glm::vec2 to = glm::clamp(glm::ceil(high + kMargin_px), from, most);
-  return {static_cast<int>(from.x), static_cast<int>(from.y), static_cast<int>(to.x - from.x),
-          static_cast<int>(to.y - from.y)};
 }
 
 }  // namespace
@@ -202,15 +193,6 @@ float BlockView::drawn_m(float depth_m) const {
 
 float BlockView::outline_px() const { return std::max(kLeastOutline_px, kOutline * static_cast<float>(still_.height)); }
 
-float BlockView::line_px() const {
-  constexpr float kLine = 0.0055F;  // in heights of the picture
-  return std::max(kLeastLine_px, kLine * static_cast<float>(still_.height));
-}
-
-float BlockView::arrow_px(float force_N) const {
-  return px_per_m_ * std::min(arrow_m_per_N_ * force_N, kLongestArrow * kToolLength * radius_m_);
-}
-
 float BlockView::opacity_of_error(const BlockPose& pose) const {
   // Shallow dents have no colour, because there is no error to show.
   return pose.shows_error ? 0.92F * glm::smoothstep(0.0003F, 0.0012F, drawn_m(pose.dent_m)) : 0.0F;
@@ -236,7 +218,11 @@ Viewport BlockView::part_around(const glm::vec3& low, const glm::vec3& high) con
     least = glm::min(least, pixel);
     most = glm::max(most, pixel);
   }
-  return grown(least, most, cell_);
+  constexpr float kMargin_px = 2.0F;  // of antialiasing
+  const glm::vec2 from = glm::clamp(glm::floor(least - kMargin_px), glm::vec2(0.0F), cell_);
+  const glm::vec2 to = glm::clamp(glm::ceil(most + kMargin_px), from, cell_);
+  return {static_cast<int>(from.x), static_cast<int>(from.y), static_cast<int>(to.x - from.x),
+          static_cast<int>(to.y - from.y)};
 }
 
 void BlockView::draw(const std::vector<BlockPose>& blocks, const Viewport& viewport, Theme theme, bool new_texts,

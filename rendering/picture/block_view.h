@@ -137,8 +137,6 @@ class BlockView {
   glm::vec2 corner(std::size_t index, std::size_t count, const Cells& cells, const glm::vec2& size) const;
   float drawn_m(float depth_m) const;
   float outline_px() const;
-  float line_px() const;
-  float arrow_px(float force_N) const;
   // block_view.cpp arranges, block_drawing.cpp draws.
   glm::vec2 in_cell(const glm::vec3& point) const;
   float halo_px(const BlockPose& pose) const;

@@ -18,17 +18,18 @@ constexpr double kColumnOfTicks_s = 0.025;  // a longer gap between two ticks is
 
 }  // namespace
 
-void ExhibitTrace::add(const ExhibitTick& tick, std::size_t level) {
+void ExhibitTrace::add(const HistoryPoint& tick, const ExhibitLineUp& line_up, std::size_t level) {
   if (began_s_ < 0.0 && !tick.in_contact) return;
   if (began_s_ < 0.0) began_s_ = tick.loop_time_s;
   seconds_ = tick.loop_time_s - began_s_;
   const auto at = static_cast<std::size_t>(seconds_ / kColumn_s);
   if (columns_.size() <= at) columns_.resize(at + 1);
-  const double over_jnd = tick.over_jnd[level];
-  if (tick.out_of_domain || !std::isfinite(tick.true_N + tick.model_N[level] + over_jnd)) return;
+  const double true_N = line_up.true_N(tick), over_jnd = line_up.over_jnd(tick, level);
+  const double model_N = tick.force_N[line_up.levels[level].slot];
+  if (tick.out_of_domain || !std::isfinite(true_N + model_N + over_jnd)) return;
   Column& column = columns_[at];
   const double share = 1.0 / ++column.ticks;
-  column.true_N += share * (tick.true_N - column.true_N);
+  column.true_N += share * (true_N - column.true_N);
   column.position_m += share * (tick.position_m - column.position_m);
   if (column.ticks == 1 || std::abs(over_jnd) > std::abs(column.over_jnd)) column.over_jnd = over_jnd;
   if (std::abs(over_jnd) <= largest_) return;
@@ -87,17 +88,19 @@ void ExhibitGame::answer(bool left) {
   state_ = State::reveal;
 }
 
-void ExhibitGame::add(const ExhibitTick& tick) {
+void ExhibitGame::add(const HistoryPoint& tick) {
   const double step_s = std::clamp(tick.loop_time_s - std::exchange(last_s_, tick.loop_time_s), 0.0, kColumnOfTicks_s);
   lifted_ = lifted_ || !tick.in_contact;
   if (state_ != State::press || !lifted_) return;
-  trace_.add(tick, level_);
+  trace_.add(tick, line_up_, level_);
   if (!tick.in_contact) return;
   for (const bool left : {true, false})
     if (!has_force_ || chosen_left_ == left) pressed_s_[left ? 0 : 1] += step_s;
   if (tick.out_of_domain) return;
-  for (std::size_t i = 0; i < line_up_.levels.size(); ++i)
-    if (std::isfinite(tick.over_jnd[i])) largest_[i] = std::max(largest_[i], std::abs(tick.over_jnd[i]));
+  for (std::size_t i = 0; i < line_up_.levels.size(); ++i) {
+    const double over_jnd = line_up_.over_jnd(tick, i);
+    if (std::isfinite(over_jnd)) largest_[i] = std::max(largest_[i], std::abs(over_jnd));
+  }
 }
 
 void ExhibitGame::go_on() {

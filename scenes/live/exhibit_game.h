@@ -22,17 +22,29 @@
 
 #include "engine/base/random_stream.h"
 #include "engine/base/result.h"
+#include "scenes/live/comparison.h"
 
 namespace palpate {
 
 inline constexpr std::size_t kExhibitLevels = 3;
 
-struct ExhibitTick {
-  double loop_time_s = 0.0, position_m = 0.0;
-  bool in_contact = false, out_of_domain = false;
-  double true_N = 0.0;
-  // Of the model of each level: its force, and the mean over 50 ms of difference / JND, signed; NaN: none.
-  std::array<double, kExhibitLevels> model_N{}, over_jnd{};
+struct ExhibitModel {
+  std::size_t slot = 0;
+  int centres = 0;
+  bool paper = false;  // a method on the measured force, as in the paper (2009)
+};
+
+// The models of a game: that of each level, from obvious to impossible.
+struct ExhibitLineUp {
+  std::optional<ExhibitModel> truth;  // empty: the reference
+  std::vector<ExhibitModel> levels;
+
+  double true_N(const HistoryPoint& tick) const { return truth ? tick.force_N[truth->slot] : tick.reference_N; }
+  // The mean over 50 ms of (model of the level - truth) / JND, signed; NaN: none.
+  double over_jnd(const HistoryPoint& tick, std::size_t level) const {
+    const double of_level = tick.sustained_over_jnd[levels[level].slot];
+    return truth ? of_level - tick.sustained_over_jnd[truth->slot] : of_level;
+  }
 };
 
 // Both forces of one level from the first contact on, averaged over intervals of 25 ms (columns).
@@ -45,7 +57,7 @@ class ExhibitTrace {
     int ticks = 0;                                               // within the training domain
   };
 
-  void add(const ExhibitTick& tick, std::size_t level);
+  void add(const HistoryPoint& tick, const ExhibitLineUp& line_up, std::size_t level);
   double seconds() const noexcept { return seconds_; }  // since the first contact
   const std::vector<Column>& columns() const noexcept { return columns_; }
   // The largest magnitude so far, and its column.
@@ -58,18 +70,6 @@ class ExhibitTrace {
   double seconds_ = 0.0;
   double largest_ = 0.0;
   std::size_t largest_at_ = 0;
-};
-
-struct ExhibitModel {
-  std::size_t slot = 0;
-  int centres = 0;
-  bool paper = false;  // a method on the measured force, as in the paper (2009)
-};
-
-// The models of a game: that of each level, from obvious to impossible.
-struct ExhibitLineUp {
-  std::optional<ExhibitModel> truth;  // empty: the reference
-  std::vector<ExhibitModel> levels;
 };
 
 struct ExhibitRound {
@@ -112,8 +112,8 @@ class ExhibitGame {
   bool can_answer() const noexcept {
     return state_ == State::press && pressed_s_[0] > kLeastPress_s && pressed_s_[1] > kLeastPress_s;
   }
-  void answer(bool left);             // ends the round, if `can_answer`
-  void add(const ExhibitTick& tick);  // call it in every tick
+  void answer(bool left);              // ends the round, if `can_answer`
+  void add(const HistoryPoint& tick);  // call it in every tick
   // Leaves `reveal` for the next round, or for `score` after the last one.
   void go_on();
 

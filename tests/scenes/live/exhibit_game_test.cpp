@@ -11,8 +11,12 @@ namespace {
 using State = ExhibitGame::State;
 const std::vector<ExhibitModel> kAll = {{0, 100, false}, {1, 40, true}, {2, 5, true}};
 
-ExhibitTick tick_at(double time_s, double over_jnd, bool in_contact = true, bool away = false) {
-  return {time_s, 0.003, in_contact, away, 2.0, {2.0, 2.0, 2.0}, {over_jnd, 0.5 * over_jnd, 0.1 * over_jnd}};
+HistoryPoint tick_at(double time_s, double over_jnd, bool in_contact = true, bool away = false) {
+  HistoryPoint tick{.loop_time_s = time_s, .reference_N = 2.0F, .in_contact = in_contact, .out_of_domain = away};
+  tick.force_N.fill(2.0F);
+  for (std::size_t slot : {0, 1, 2})
+    tick.sustained_over_jnd[slot] = static_cast<float>(over_jnd) * (slot == 2 ? 1.0F : slot == 1 ? 0.5F : 0.125F);
+  return tick;
 }
 // A press of `seconds` from the air, in which the first level is off by `over_jnd`.
 void press(ExhibitGame& game, double from_s, double seconds, double over_jnd) {
@@ -70,7 +74,7 @@ TEST(ExhibitGame, PressesComeBeforeTheQuestionAndAllAreJudgedByAllPresses) {
   // The same presses for all: the order of the levels is that of their errors.
   EXPECT_DOUBLE_EQ(game.largest_over_jnd(0), 8.0);
   EXPECT_DOUBLE_EQ(game.largest_over_jnd(1), 4.0);
-  EXPECT_DOUBLE_EQ(game.largest_over_jnd(2), 0.8);
+  EXPECT_DOUBLE_EQ(game.largest_over_jnd(2), 1.0);
   game.reset();
   EXPECT_EQ(game.state(), State::attract);
 }
@@ -102,16 +106,17 @@ TEST(ExhibitGame, OnADeviceBothBlocksHaveToBeChosenAndPressed) {
 
 TEST(ExhibitTrace, KeepsTheLargestWithinWhatWasTrainedFor) {
   ExhibitTrace trace;
+  const ExhibitLineUp line_up = ExhibitGame::line_up_of(kAll, true, false);
   for (int i = 0; i < 2000; ++i) {
     const bool away = i >= 1000 && i < 1100;
-    trace.add(tick_at(5.0 + 1e-3 * i, i == 700 ? -0.7 : away ? 3.0 : 0.5, true, away), 0);
+    trace.add(tick_at(5.0 + 1e-3 * i, i == 700 ? -0.75 : away ? 3.0 : 0.5, true, away), line_up, 0);
   }
-  EXPECT_NEAR(trace.largest_over_jnd(), 0.7, 1e-9);
+  EXPECT_NEAR(trace.largest_over_jnd(), 0.75, 1e-9);
   EXPECT_EQ(trace.largest_at(), 28u);
-  EXPECT_NEAR(trace.columns()[28].over_jnd, -0.7, 1e-9) << "with its sign";
+  EXPECT_NEAR(trace.columns()[28].over_jnd, -0.75, 1e-9) << "with its sign";
   EXPECT_TRUE(std::isnan(trace.columns()[41].over_jnd)) << "where nothing was recorded the curve has a gap";
   EXPECT_NEAR(trace.seconds(), 1.999, 1e-9);
-  for (int i = 2000; i < 70000; ++i) trace.add(tick_at(5.0 + 1e-3 * i, i > 61000 ? 1.0 : 0.0), 0);
+  for (int i = 2000; i < 70000; ++i) trace.add(tick_at(5.0 + 1e-3 * i, i > 61000 ? 1.0 : 0.0), line_up, 0);
   EXPECT_EQ(trace.largest_over_jnd(), 1.0) << "also after a minute";
 }
 
