@@ -23,11 +23,8 @@
 #include <cerrno>
 #include <charconv>
 #include <cmath>
-#include <cstring>
 #include <optional>
 #include <string_view>
-#include <utility>
-#include <vector>
 
 #include "engine/base/signals.h"
 #include "engine/base/statistics.h"

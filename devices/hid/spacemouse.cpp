@@ -1,7 +1,6 @@
 // 3Dconnexion's SpaceMouse: report 1 begins with three int16 translations. z is used; it is positive when the cap is
 // pushed down. The host writes no reports.
 #include <algorithm>
-#include <array>
 #include <cstdlib>
 
 #include "devices/firmware/wire.h"

@@ -3,16 +3,12 @@
 #include <poll.h>
 #include <unistd.h>
 
-#include <algorithm>
-#include <array>
 #include <chrono>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <system_error>
-#include <utility>
 
-#include "devices/link/device_protocol.h"
 #include "engine/base/files.h"
 #include "engine/base/signals.h"
 #include "engine/base/text.h"

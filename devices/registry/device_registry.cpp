@@ -1,11 +1,7 @@
 #include "devices/registry/device_registry.h"
 
-#include <utility>
-
 #include "devices/bridge/bridge_bus.h"
 #include "devices/hid/hidapi_bus.h"
-#include "devices/link/device_link.h"
-#include "devices/virtual/simulated_devices.h"
 #include "engine/base/text.h"
 
 namespace palpate {

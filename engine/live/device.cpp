@@ -1,8 +1,5 @@
 #include "engine/live/device.h"
 
-#include <algorithm>
-#include <cmath>
-
 namespace palpate {
 namespace {
 

@@ -1,7 +1,5 @@
 #include "engine/live/force_guard.h"
 
-#include <utility>
-
 namespace palpate {
 namespace {
 

@@ -2,9 +2,7 @@
 #include <GLFW/glfw3.h>
 
 #include <algorithm>
-#include <string>
 #include <utility>
-#include <vector>
 
 #include "engine/live/pacer.h"
 #include "rendering/app/demo_app.h"

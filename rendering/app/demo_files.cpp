@@ -11,7 +11,6 @@
 
 #include "engine/base/files.h"
 #include "engine/base/text.h"
-#include "scenes/plot/plot.h"
 #include "scenes/scene/scene.h"
 
 namespace palpate {

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <utility>
 
-#include "engine/live/pacer.h"
 #include "rendering/app/demo_app.h"
 
 namespace palpate {

@@ -5,12 +5,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
-#include <functional>
-#include <memory>
-#include <optional>
-#include <string>
 #include <utility>
-#include <vector>
 
 #include "engine/base/files.h"
 #include "engine/base/signals.h"

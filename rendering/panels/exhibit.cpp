@@ -5,10 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <string>
 #include <utility>
 
-#include "engine/base/text.h"
 #include "scenes/scene/scene.h"
 
 namespace palpate {

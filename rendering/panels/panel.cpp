@@ -5,7 +5,6 @@
 #include <cstdio>
 #include <iterator>
 #include <sstream>
-#include <vector>
 
 #include "scenes/worker/model_worker.h"
 

@@ -1,7 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <string>
-#include <vector>
 
 #include "engine/base/text.h"
 #include "rendering/panels/panel.h"

@@ -1,13 +1,6 @@
 #include "rendering/panels/window_view.h"
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <utility>
-
 #include "engine/base/text.h"
-#include "engine/live/pacer.h"
-#include "scenes/live/live_session.h"
 
 namespace palpate {
 namespace {

@@ -12,8 +12,6 @@
 #include <numbers>
 #include <utility>
 
-#include "scenes/scene/scene.h"
-
 namespace palpate {
 namespace {
 

@@ -1,8 +1,5 @@
 #include "scenes/live/comparison.h"
 
-#include <algorithm>
-#include <cmath>
-
 #include "models/trend/trend_estimator.h"
 
 namespace palpate {

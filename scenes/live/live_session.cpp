@@ -11,9 +11,7 @@
 #include "models/model/fitted_model.h"
 #include "models/samples/samples.h"
 #include "scenes/evaluation/evaluate.h"
-#include "scenes/live/session_recorder.h"
 #include "scenes/material/rig.h"
-#include "scenes/scene/scene.h"
 
 namespace palpate {
 namespace {

@@ -4,15 +4,12 @@
 #include <chrono>
 #include <limits>
 #include <system_error>
-#include <utility>
 
 #include "engine/base/text.h"
 #include "models/model/file/model_io.h"
 #include "models/model/fitted_model.h"
 #include "models/samples/samples.h"
 #include "models/trend/trend_estimator.h"
-#include "scenes/evaluation/evaluate.h"
-#include "scenes/worker/model_worker.h"
 
 namespace palpate {
 namespace {
