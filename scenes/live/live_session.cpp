@@ -209,9 +209,8 @@ void LiveSession::update_models() {
     comparison_.forget_slot(slot);
     paths_.erase(slot);
   }
-  if (ready.empty()) return;
   for (const std::size_t slot : ready) comparison_.begin_slot(slot);
-  publish();
+  if (models_.read_changed()) publish();
 }
 
 // Clears all errors, so that all models are compared over the same samples.
@@ -222,20 +221,6 @@ void LiveSession::publish() {
   loop_->publish_models(std::move(set));
 }
 
-void LiveSession::remove(std::size_t slot) {
-  if (models_.remove(slot)) publish();
-}
-
-void LiveSession::treat_as_this_material(std::size_t slot) {
-  models_.treat_as_this_material(slot);
-  comparison_.forget_errors();
-}
-
-void LiveSession::add_model(const std::string& name) {
-  models_.add(name);
-  publish();
-}
-
 void LiveSession::use_line_up(const std::string& name) {
   const LineUp* line_up = find_line_up(name);
   if (line_up == nullptr || !scene_.has_material()) return;
@@ -243,7 +228,6 @@ void LiveSession::use_line_up(const std::string& name) {
   if (!plans) return;
   request_.line_up = name;
   models_.use_requests(*plans);
-  publish();
 }
 
 void LiveSession::read_snapshots() {

@@ -73,16 +73,12 @@ class LiveSession {
   const LoopSnapshot& newest() const noexcept { return newest_; }
   const HapticsLoop& loop() const noexcept { return *loop_; }
 
-  // The models. `treat_as_this_material` and `remove` of the session clear errors as well.
+  // The next `update` hands changed models to the loop and clears the errors.
   SessionModels& models() noexcept { return models_; }
   const SessionModels& models() const noexcept { return models_; }
-  void treat_as_this_material(std::size_t slot);  // see SessionModels::treat_as_this_material
-  void remove(std::size_t slot);                  // the last model stays, with a notice
   // The line-up that is shown; empty: the default models of the scene, or models that were named one by one.
   const std::string& line_up() const noexcept { return request_.line_up; }
   void use_line_up(const std::string& name);  // ignored when unknown or without a material to fit to
-
-  void add_model(const std::string& name);  // see SessionModels::add
   // The moment of the model's largest error (mean over 50 ms) in the test, with the ticks of all models around it; with
   // `of_test` false, or without a test, in the ticks of this session. `zero_s`: the loop time of the first tick of the
   // test. Takes some tenths of a second. Empty: the model is not ready, or nothing was compared yet.

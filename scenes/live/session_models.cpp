@@ -79,6 +79,7 @@ std::vector<std::size_t> SessionModels::update() {
 
 // Of several models with the same forces one is listed: the simplest, else the first.
 void SessionModels::unite_equal() {
+  changed_ = true;
   std::vector<std::size_t> order;
   for (std::size_t i = 0; i < slots_.size(); ++i) {
     Slot& slot = slots_[i];
@@ -208,19 +209,16 @@ void SessionModels::add(const std::string& name) {
   if (show(requests->front())) unite_equal();
 }
 
-bool SessionModels::remove(std::size_t index) {
-  if (index >= slots_.size() || slots_[index].removed) return false;
+void SessionModels::remove(std::size_t index) {
+  if (index >= slots_.size() || slots_[index].removed) return;
   Slot& slot = slots_[index];
-  if (slot.takes_part() && ready_slots().size() == 1) {
-    notices_.push_back({"the last model cannot be removed", false});
-    return false;
-  }
+  if (slot.takes_part() && ready_slots().size() == 1)
+    return notices_.push_back({"the last model cannot be removed", false});
   slot.removed = true;
   slot.info.state = SlotState::hidden;
   worker_.cancel_job(slot.job);
   free(index);
   unite_equal();
-  return true;
 }
 
 // Removes the slot from all published sets, so that another model may use it.

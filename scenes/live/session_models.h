@@ -75,8 +75,10 @@ class SessionModels {
   Status start(const std::vector<ModelRequest>& requests);
   // Interrupts fits; does not wait.
   void cancel() noexcept { worker_.cancel(); }
-  // Call it once a frame. Returns the slots whose models became ready. If there are any, publish a new set.
+  // Call it once a frame. Returns the slots whose models became ready.
   std::vector<std::size_t> update();
+  // Whether the models have changed since the last call: then publish a new set.
+  bool read_changed() noexcept { return std::exchange(changed_, false); }
 
   // Makes a set of all ready models, which is then the newest set. `reference` may be null.
   std::unique_ptr<LiveModels> make_set(const SensorSpec& sensor, std::shared_ptr<ReferenceForce> reference);
@@ -115,6 +117,7 @@ class SessionModels {
   void treat_as_this_material(std::size_t slot) noexcept {
     slots_[slot].request.of_this_material = true;
     slots_[slot].info.other_material = false;
+    changed_ = true;
   }
 
   // Shows the models of these requests, fits those that are missing and hides all others except models from files.
@@ -122,8 +125,8 @@ class SessionModels {
   void use_requests(const std::vector<ModelRequest>& requests);
   // Shows one more model by its name, fitted if there is none yet; a notice says why not.
   void add(const std::string& name);
-  // Removes a model permanently and cancels its fit. Returns false, with a notice, for the last model that is ready.
-  bool remove(std::size_t slot);
+  // Removes a model permanently and cancels its fit; not the last model that is ready, with a notice.
+  void remove(std::size_t slot);
   // The slots whose models were removed or replaced since the last call. Discard all results of theirs.
   std::vector<std::size_t> read_freed() { return std::exchange(freed_, {}); }
   // Fits the model, again if it is ready, with this number of centres, before those that wait. Ignored unless
@@ -181,7 +184,7 @@ class SessionModels {
   std::vector<Slot> slots_;
   std::vector<PublishedSet> sets_;  // newest last
   std::size_t selected_ = 0;
-  bool user_chose_ = false;
+  bool user_chose_ = false, changed_ = false;
   std::size_t next_job_ = 0;
   std::vector<std::size_t> loaded_;  // slots of files since the last update
   std::vector<std::size_t> freed_;   // see read_freed

@@ -78,7 +78,7 @@ TEST_F(DemoAppTest, ADroppedModelTakesPart) {
 TEST_F(DemoAppTest, ModelsAreTakenOut) {
   open("hand");
   LiveSession& session = app_->session();
-  session.remove(0);
+  session.models().remove(0);
   EXPECT_EQ(session.models().info(0).state, SlotState::hidden);
   EXPECT_EQ(session.models().selected(), 1u) << "the active model is one that is there";
   frames(10);

@@ -218,15 +218,15 @@ TEST_F(SessionOfFiles, ARemovedModelFreesItsSlotButTheLastOneStays) {
   ASSERT_TRUE(frames_until(*session, [&] { return session->models().all_settled(); }));
   EXPECT_FALSE(session->models().load_file(folder.file("b.json"))) << "the loop takes no more";
   EXPECT_TRUE(session->read_notices().back().problem);
-  session->remove(5);
+  session->models().remove(5);
   EXPECT_TRUE(session->models().load_file(folder.file("b.json"))) << "in its place";
   frames(*session, 0.1);
   EXPECT_EQ(session->models().size(), kMaxModels);
   EXPECT_EQ(session->models().info(5).name, "second");
   const ForceHistory& history = session->comparison().history();
   EXPECT_TRUE(std::isnan(history[0].force_N[5])) << "no curve of the model that was there";
-  for (std::size_t i = 1; i < kMaxModels; ++i) session->remove(i);
-  session->remove(0);
+  for (std::size_t i = 1; i < kMaxModels; ++i) session->models().remove(i);
+  session->models().remove(0);
   EXPECT_EQ(session->models().info(0).state, SlotState::ready) << "there must be one to press";
 }
 
@@ -300,7 +300,7 @@ TEST_F(SessionOfFiles, AModelOfSomethingElseIsNotComparedWithTheTruth) {
   EXPECT_TRUE(beside->models().info(loaded).other_material);
   ASSERT_TRUE(frames_until(*beside, [&] { return beside->figures(0).errors.samples > 100; }));
   EXPECT_EQ(beside->figures(loaded).errors.samples, 0u);
-  beside->treat_as_this_material(loaded);
+  beside->models().treat_as_this_material(loaded);
   EXPECT_TRUE(beside->models().requests().at(loaded).of_this_material) << "in the next session, too";
   ASSERT_TRUE(frames_until(*beside, [&] { return beside->figures(loaded).errors.samples > 100; }));
 

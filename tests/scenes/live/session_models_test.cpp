@@ -97,13 +97,13 @@ TEST(SessionModels, TheWorstMomentIsFoundAndSaid) {
 TEST(SessionModels, AModelIsAddedByItsNameAndTakenOutBeforeItIsFitted) {
   const Session session = must(LiveSession::open(session_request("elastic_block", "hand", {"random-3"})));
   ASSERT_TRUE(frames_until(*session, [&] { return session->models().all_settled(); }));
-  session->add_model("random-5");
-  session->add_model("greedy-200");
-  session->remove(2);
+  session->models().add("random-5");
+  session->models().add("greedy-200");
+  session->models().remove(2);
   ASSERT_TRUE(frames_until(*session, [&] { return session->models().all_settled(); }));
   EXPECT_EQ(session->models().info(1).name, "random-5");
   EXPECT_EQ(session->models().ready_slots(), (std::vector<std::size_t>{0, 1}));
-  session->add_model("random-5");
+  session->models().add("random-5");
   EXPECT_EQ(session->models().ready_slots().size(), 2u) << "it is there already";
 }
 
