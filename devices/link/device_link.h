@@ -57,7 +57,6 @@ class LinkListener {
   virtual void written(double) noexcept {}
 };
 
-// An open device, its node and its protocol.
 struct OpenedDevice {
   DeviceNode info{};
   const DeviceProtocol* protocol = nullptr;
@@ -80,8 +79,7 @@ class DeviceLink {
   DeviceLink(DeviceBus& bus, LinkListener& listener, OpenedDevice opened);
   ~DeviceLink();
 
-  // Slow side. Errors: a thread cannot be started.
-  Status start();
+  Status start();  // slow side; errors: a thread cannot be started
   // Slow side, blocking: ends the writer, sends the stop report, which removes the force, and closes the connection.
   void stop() noexcept;
   // Protocol, product, node and what it was tested on, e.g. "OpenFFBoard, one axis: FFBoard, /dev/hidraw7".
@@ -276,7 +274,6 @@ class StreamMonitor {
 
   // Takes a decoded report that arrived at `now_s` (non-decreasing). `force_N`: the commanded force.
   void update(ReportVerdict verdict, const DeviceReading& reading, double now_s, double force_N) noexcept;
-  // Another fault of the device.
   void fault(std::uint32_t bit, double now_s) noexcept;
   // The device was unplugged; the next report begins a new stream.
   void unplugged() noexcept;
@@ -410,7 +407,6 @@ class LinkedDevice final : public DeviceEndpoint {
   ~LinkedDevice() override { close(); }
 
   bool measures_force() const noexcept override { return measures_force_; }
-  // Errors: a thread cannot be started.
   Status open() override { return link_.start(); }
   void close() noexcept override { link_.stop(); }
   std::string note() const override { return link_.description(); }

@@ -24,7 +24,6 @@ struct DeviceNode {
   std::uint16_t vendor_id = 0, product_id = 0, usage_page = 0, usage = 0;
 };
 
-// The result of decoding one report.
 enum class ReportVerdict : std::uint8_t {
   position,       // a reading with the position
   nothing,        // valid, but without a position

@@ -24,7 +24,6 @@ namespace palpate {
 //   m a = k (aim - x) + c (d aim/dt - v) - F
 // For a press of F newtons the target is the depth at which the block holds F, plus F / k. A derived class knows that
 // depth from the material or estimates it from the force.
-// Deterministic: the same seed and forces give the same motion.
 // Thread guarantee: one thread at a time; `move` and `feel` are wait-free and allocate nothing.
 
 struct HandSettings {

@@ -41,7 +41,6 @@ struct ForceLimits {
   double stop_s = 0.01;          // time to reduce any force to 0; >= 0
 };
 
-// The conditions of one force.
 struct ForceConditions {
   double sample_age_s = 0.0;  // NaN counts as stale
   bool device_fault = false;
@@ -202,7 +201,6 @@ inline std::vector<std::string> alarm_words(FaultSource source, std::uint32_t bi
     if (fault.alarm && fault.source == source && (bits & fault.bit) != 0) words.emplace_back(fault.sentence);
   return words;
 }
-// The sentences of a device's alarms among `faults`: what happened and what to do.
 inline std::vector<std::string> device_fault_words(std::uint32_t faults) {
   return alarm_words(FaultSource::device, faults);
 }
@@ -248,7 +246,6 @@ struct ForceAge {
   double middle_s() const noexcept { return 0.5 * (least_s + largest_s); }
 };
 
-// One sample of a device.
 struct DeviceSample {
   ToolSample tool;
   double measured_N = kNoForce;  // the reading of a force sensor; NaN: none

@@ -9,10 +9,8 @@
 // tests/accuracy/closed_loop_link_test.cpp: over rates, groups, delays and jitter, the lightest hand (50 g, 2.2 N s/m)
 // keeps still within 0.35 mm up to K T = 2.1 N s/m + 0.46 B with an encoder of 10 um; the limit is 0.85 of that. The
 // controller has a play of one step, so that c goes to 0 at steps of 50 um. The test does not cover coarser encoders.
-// B limits the sum of the damping of model and user, and that of user and controller. What it achieves
-// (PALPATE_GRID=1 palpate_tests --gtest_filter=*BehindAnyLink): behind simulated links of 100 Hz to 5 kHz, with groups
-// of up to 16 and delays up to 50 ms, a hand at rest swings by at most 0.16 mm, and a press returns 0.5 mJ more than it
-// took in the median, 5 mJ in 95 %, 0.18 J at most (a block of 7 kN/m, touched behind commands in groups of 16).
+// B limits the sum of the damping of model and user, and that of user and controller. devices/README.md has what it
+// achieves behind simulated links.
 //
 // Passivity controller (Hannaford & Ryu 2002; Ryu et al. 2004 for a reference that follows the depth). A late force is
 // too small on the way in and too large on the way out, so that the loop gains energy. Observer: E += F dx, the energy
@@ -74,7 +72,6 @@ class ForceMixer {
     return force_N + share * difference_N;
   }
 
-  // The current mixture.
   double current(const Forces& forces_N) const noexcept {
     double force_N = 0.0;
     for (std::size_t i = 0; i < weights_.size(); ++i)

@@ -33,8 +33,7 @@ struct LoopStatistics {
   double age_s = 0.0;                   // since the last tick ended; large in a stall
 };
 
-// Capacity of the ring of snapshots: four seconds.
-inline constexpr std::size_t kSnapshotRing = 4096;
+inline constexpr std::size_t kSnapshotRing = 4096;  // four seconds
 
 class HapticsLoop {
  public:

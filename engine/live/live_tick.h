@@ -67,7 +67,6 @@ enum class DeadMan : std::uint8_t {
 // A key counts as held for this time after LoopControls::held_s, so that a window that hangs releases it.
 inline constexpr double kDeadManHold_s = 0.2;
 
-// The user's settings of the loop.
 struct LoopControls {
   std::uint32_t models_id = 0;  // the set that `selected` refers to
   std::uint32_t selected = 0;   // the active model

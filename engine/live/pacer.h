@@ -27,7 +27,6 @@ void set_timer_slack_1ns() noexcept;
 // and touches 256 KiB of stack. Blocking, allocates.
 RtStatus make_this_thread_realtime(int priority = 80, bool lock_memory = true);
 
-// The result of waiting for a deadline.
 struct Wake {
   std::int64_t lateness_ns = 0;  // after the deadline, >= 0
   std::uint64_t missed = 0;      // number of later deadlines that have passed, which are skipped
@@ -70,7 +69,6 @@ class Pacer {
 std::int64_t steady_now_ns() noexcept;
 inline double steady_now_s() noexcept { return 1e-9 * static_cast<double>(steady_now_ns()); }
 
-// A pacer of the steady clock.
 class SteadyPacer final : public Pacer {
  public:
   std::int64_t now_ns() noexcept override { return steady_now_ns(); }

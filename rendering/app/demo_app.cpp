@@ -244,10 +244,7 @@ WindowActions DemoApp::make_actions() {
     view_.material = false;
     (void)session_->models().select(slot);
   };
-  actions.remove = [this](std::size_t slot) { session_->models().remove(slot); };
-  actions.treat_as_this_material = [this](std::size_t slot) { session_->models().treat_as_this_material(slot); };
-  actions.refit = [this](std::size_t slot, int centres) { session_->models().refit(slot, centres); };
-  actions.add_model = [this](const std::string& name) { session_->models().add(name); };
+  actions.models = [this]() -> SessionModels& { return session_->models(); };
   actions.worst = [this](std::size_t slot) { use_worst(slot); };
   actions.scale = [this](const ForceScale& scale) { session_->controls().scale = scale; };
   actions.zero_device = [this] { session_->start_zeroing(); };

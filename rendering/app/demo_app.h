@@ -68,7 +68,6 @@ class DemoFiles {
   std::string picture_path() { return new_path("/picture-%Y%m%d-%H%M%S", ".png"); }
   void save_model(const LiveSession& session);
   void look_for_devices();
-  // Appends to the log file of the exhibit.
   static void write_to_log(const std::string& text);
 
  private:

@@ -11,7 +11,6 @@
 namespace palpate {
 namespace {
 
-// Speed of the tool while a key is held.
 constexpr double kKeySpeed_m_per_s = 0.018;
 constexpr double kScrollSpeed = 6.0;  // seconds per second
 constexpr double kSeekStep_s = 2.0;
@@ -45,7 +44,6 @@ WindowCommand toggle(int key, const char* label, const char* help, bool& setting
   return with_state(command(key, label, help, [&setting] { setting = !setting; }), [&setting] { return setting; });
 }
 
-// Opens a dialog, or closes it.
 WindowCommand dialog(int key, const char* label, const char* help, Dialog one, Dialog& open) {
   return with_state(command(key, label, help, [one, &open] { open = open == one ? Dialog::none : one; }),
                     [one, &open] { return open == one; });

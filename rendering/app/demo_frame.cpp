@@ -1,4 +1,3 @@
-// Draws a frame of the window.
 #include <GLFW/glfw3.h>
 #include <epoxy/gl.h>
 

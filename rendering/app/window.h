@@ -38,7 +38,6 @@ class Window {
   UiSize size() const noexcept;
   // Whether the window is large enough for anything to be seen in it.
   bool is_visible() const noexcept;
-  // Fills the frame with one colour.
   void clear(const Rgb& colour) const;
   // Shows the frame and waits for the next one: until the display is ready if the driver waits for it, else 1/60 s.
   void show_frame();

@@ -64,7 +64,6 @@ bool list_entry(const std::string& text, bool selected = false, bool enabled = t
   return chosen || (enabled && ImGui::IsItemFocused() && enter_pressed());
 }
 
-// Explains the picture, and lists the commands.
 void draw_help(ViewState& view, const std::vector<WindowCommand>& commands) {
   if (!begin_dialog("Help", view.dialogs, Dialog::help)) return;
   const float unit = ImGui::GetFontSize(), all = dialog_room().x - 4.0F * unit;

@@ -75,7 +75,6 @@ class Exhibit {
 
   // Call it once a frame. Returns whether the visitor has just left, so that the exhibit started again.
   bool update(const WindowView& shown, ViewState& view, const WindowActions& actions);
-  // `key`: of GLFW.
   void press_key(int key, const WindowView& shown);
   void toggle_host() noexcept { host_ = !host_; }
   void draw(const WindowView& shown, const BlockView& blocks, const UiStyle& style, const WindowLayout& layout);

@@ -26,7 +26,7 @@ void draw_centres(const ModelsView& models, ViewState& view, const WindowActions
   if (ImGui::SliderInt("##centres", &centres, 1, kMostCentres, "%d",
                        ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp)) {
     view.requested_centres = centres;
-    for (const std::size_t slot : slots) actions.refit(slot, centres);
+    for (const std::size_t slot : slots) actions.models().refit(slot, centres);
   }
   tip("Fits every model that has centres again with this number of centres.\n"
       "Drag to the left, and watch the curves leave their band and the dots move.");

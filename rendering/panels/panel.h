@@ -103,7 +103,6 @@ HealthWords health_words(const HealthView& health, double recent_fps, bool detai
 // Age of the sample, rate, round trip, stiffness limit and heat of a real device, or of one with a fault; else empty.
 std::string device_line(const HealthView& health);
 
-// Draws an ImGui window at `area`.
 void draw_panel(ForceCurves& curves, const WindowView& shown, ViewState& view, const UiStyle& style,
                 const SceneArea& area, const WindowActions& actions);
 
@@ -111,7 +110,6 @@ void draw_panel(ForceCurves& curves, const WindowView& shown, ViewState& view, c
 std::string key_name(int key);
 // The keys in the list and in tooltips: "Ctrl+Q", "H, /".
 std::string shown_keys(const WindowCommand& command);
-// The present label.
 const std::string& shown_label(const WindowCommand& command);
 
 // Draws the button with its tooltip at the cursor; `side`: at least its height and width. Returns whether it was

@@ -129,14 +129,14 @@ struct Rows {
 
   void draw_menu(Slot slot) const {
     if (!models().slots[slot].other_material || !ImGui::BeginPopupContextItem()) return;
-    if (ImGui::Selectable("It is a model of this material: compare it")) actions.treat_as_this_material(slot);
+    if (ImGui::Selectable("It is a model of this material: compare it")) actions.models().treat_as_this_material(slot);
     ImGui::EndPopup();
   }
 
   // A model that is ready is taken out, the fit of another one is cancelled.
   void draw_cross(Slot slot) const {
     ImGui::PushID(static_cast<int>(slot));
-    if (ImGui::SmallButton("×")) actions.remove(slot);
+    if (ImGui::SmallButton("×")) actions.models().remove(slot);
     ImGui::PopID();
     tip(models().slots[slot].state == SlotState::ready ? "takes it out of the comparison" : "cancels the fit");
   }
@@ -211,7 +211,7 @@ struct Rows {
         const std::string size = centres > 0 ? std::to_string(centres) : "";
         ImGui::SameLine(centres == method.centres.front() ? 9.0F * ImGui::GetFontSize() : 0.0F);
         if (ImGui::Button(size.empty() ? "add" : size.c_str())) {
-          actions.add_model(method.family + (size.empty() ? "" : "-") + size);
+          actions.models().add(method.family + (size.empty() ? "" : "-") + size);
           ImGui::CloseCurrentPopup();
         }
       }

@@ -202,7 +202,6 @@ struct FrameFigures {
   }
 };
 
-// A notice over the picture.
 struct Toast : Notice {
   double left_s = 0.0;
 };
@@ -305,9 +304,8 @@ struct WindowView {
 struct WindowActions {
   using OfSlot = std::function<void(std::size_t)>;
   using OfText = std::function<void(const std::string&)>;
-  OfSlot select, remove, treat_as_this_material, worst;
-  std::function<void(std::size_t, int)> refit;  // with this number of centres
-  OfText add_model;                             // the name of a method with a size
+  OfSlot select, worst;
+  std::function<SessionModels&()> models;
   std::function<void(const ForceScale&)> scale;
   std::function<void()> zero_device, look_for_devices;
   std::function<void(bool)> move_surface;
@@ -333,7 +331,6 @@ struct BigNumber {
 };
 BigNumber big_number(const ModelsView& models);
 
-// The table of models as text, CSV.
 std::string table_csv(const ModelsView& models);
 
 }  // namespace palpate

@@ -1,4 +1,3 @@
-// Draws the parts of a block and its tool.
 #include <epoxy/gl.h>
 
 #include <algorithm>

@@ -34,9 +34,7 @@ class Camera {
   // from `yaw_rad` to the right of the front and `pitch_rad` above it. `at_once`: without a transition.
   void frame(float radius_m, float height_m, float yaw_rad, float pitch_rad, bool at_once);
   void orbit(float yaw_rad, float pitch_rad);
-  // Multiplies the distance by `factor`.
   void zoom(float factor);
-  // Returns to the basic view.
   void go_home() { turn({}); }
   void turn(const CameraTurn& turn);
   // Moves towards the target, with a time constant of 0.12 s.

@@ -63,7 +63,6 @@ struct DentShape {
 // `depth_m`: any; there is no dent at 0 or below. `radius_m`: R > 0.
 DentShape dent_under_ball(float depth_m, float radius_m) noexcept;
 
-// A shader program from assets/shaders.
 class Shader {
  public:
   // Compiles and links `vertex`.vert and `fragment`.frag in `folder`, each preceded by `definitions`, which are lines
@@ -113,7 +112,6 @@ class Pixels {
   unsigned framebuffer_ = 0, colour_ = 0, depth_ = 0;
 };
 
-// A mesh in the memory of the graphics card.
 class GpuMesh {
  public:
   explicit GpuMesh(const Mesh& mesh);

@@ -41,7 +41,6 @@ class LivePlot {
  public:
   // Reserves `size` at the cursor, draws grid and labels, and begins to clip to the frame.
   LivePlot(const UiStyle& style, const ImVec2& size, const PlotAxes& axes);
-  // Ends the clipping.
   ~LivePlot();
   LivePlot(const LivePlot&) = delete;
   LivePlot& operator=(const LivePlot&) = delete;

@@ -243,7 +243,6 @@ void LiveSession::read_snapshots() {
   }
 }
 
-// Writes the last second before a fault to a file.
 void LiveSession::save_fault_ticks() {
   if (fault_files_ == kMostFaultFiles) return;
   ++fault_files_;
