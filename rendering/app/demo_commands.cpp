@@ -215,7 +215,7 @@ void DemoApp::use_worst(std::size_t slot) {
   view_.time.pause(found->at_s + kAfter_s);
   view_.time.shown_s = std::clamp(found->at_s + kAfter_s - ticks[0].loop_time_s, kLeastShown_s, kShown_around_s);
   view_.time.rest_s = found->at_s;
-  view_.worst = WorstMoment{std::move(*found), slot};
+  view_.worst = std::move(found);
   if (session_->replay() != nullptr) session_->replay()->pause(true);
   curves_ = {};
 }

@@ -185,11 +185,6 @@ struct ExhibitState {
   bool tool_is_held = false;  // keeps the tool out of the block; the mouse has no effect
 };
 
-// The moment of a model's largest error, which is shown instead of the present.
-struct WorstMoment : LiveSession::Worst {
-  std::size_t slot = 0;
-};
-
 struct FrameFigures {
   TimeHistogram times;  // from the end of one frame to that of the next
   double seconds = 0.0;
@@ -215,19 +210,19 @@ struct ViewState {
   std::vector<DeviceDescription> devices;  // empty: no search has finished
   FrameFigures frames;
   std::vector<Toast> toasts;
-  bool scales_force = false;              // shows the sliders that scale the rendered force
-  int focus = -1;                         // the button that Tab has reached; -1: none
-  bool opens_menu = false;                // the next frame opens the menu
-  bool exaggerated = false;               // arrows show ten times the difference
-  int requested_centres = 0;              // last value of the slider of centres
-  bool details = false;                   // shows the faults of the loop
-  float health_px = 0.0F;                 // height of the lines about the loop in the last frame
-  bool has_pressed = false;               // the user has pressed a block, so that the hint is hidden
-  std::size_t pointed = kReferenceBlock;  // slot of the row under the mouse
-  std::size_t crossed = kReferenceBlock;  // the same of the frame before, for the row's button
-  std::size_t second = kReferenceBlock;   // slot of the other of two models that are compared; or none
-  bool material = false;                  // the block of the reference is the chosen one
-  std::optional<WorstMoment> worst;       // it is shown instead of the present
+  bool scales_force = false;                // shows the sliders that scale the rendered force
+  int focus = -1;                           // the button that Tab has reached; -1: none
+  bool opens_menu = false;                  // the next frame opens the menu
+  bool exaggerated = false;                 // arrows show ten times the difference
+  int requested_centres = 0;                // last value of the slider of centres
+  bool details = false;                     // shows the faults of the loop
+  float health_px = 0.0F;                   // height of the lines about the loop in the last frame
+  bool has_pressed = false;                 // the user has pressed a block, so that the hint is hidden
+  std::size_t pointed = kReferenceBlock;    // slot of the row under the mouse
+  std::size_t crossed = kReferenceBlock;    // the same of the frame before, for the row's button
+  std::size_t second = kReferenceBlock;     // slot of the other of two models that are compared; or none
+  bool material = false;                    // the block of the reference is the chosen one
+  std::optional<LiveSession::Worst> worst;  // it is shown instead of the present
 };
 
 // A slot: its model and its errors.

@@ -278,7 +278,7 @@ ModelFigures LiveSession::figures(std::size_t slot) const {
 
 std::optional<LiveSession::Worst> LiveSession::worst(std::size_t slot, bool of_test, double zero_s) const {
   if (slot >= models_.size() || models_.info(slot).state != SlotState::ready) return std::nullopt;
-  Worst worst;
+  Worst worst{.slot = slot};
   if (const Recording* recording = of_test ? test_.recording() : nullptr)
     worst.history = worst_of_test(slot, *recording, zero_s);
   const ForceHistory& history = worst.history ? *worst.history : comparison_.history();
@@ -332,8 +332,7 @@ std::shared_ptr<const ForceHistory> LiveSession::worst_of_test(std::size_t slot,
     worst_s = point.time_s;
   });
   const auto is_near = [&](double time_s) { return time_s >= worst_s - kBefore_s && time_s <= worst_s + kAfter_s; };
-  auto history = std::make_shared<ForceHistory>(
-      static_cast<std::size_t>(std::ranges::count_if(recording.rows, is_near, &RecordingRow::time_s)));
+  auto history = std::make_shared<ForceHistory>(recording.rows.size());
   each_tick([&](const HistoryPoint& point) {
     if (is_near(point.time_s)) history->append(point);
   });

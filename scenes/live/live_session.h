@@ -83,9 +83,10 @@ class LiveSession {
   // `of_test` false, or without a test, in the ticks of this session. `zero_s`: the loop time of the first tick of the
   // test. Takes some tenths of a second. Empty: the model is not ready, or nothing was compared yet.
   struct Worst {
-    std::string words;                            // motion_words
-    double at_s = 0.0;                            // loop time
-    std::shared_ptr<const ForceHistory> history;  // of the test; null: that of the session
+    std::size_t slot = 0;
+    std::string words{};                            // motion_words
+    double at_s = 0.0;                              // loop time
+    std::shared_ptr<const ForceHistory> history{};  // of the test; null: that of the session
   };
   std::optional<Worst> worst(std::size_t slot, bool of_test, double zero_s) const;
 
