@@ -97,7 +97,7 @@ void draw_scene_list(const WindowView& shown, ViewState& view, const WindowActio
     return all;
   }();
   for (const Scene& scene : scenes) {
-    if (list_entry(scene.title + "###" + scene.name, scene.name == shown.scene)) {
+    if (list_entry(scene.title + "###" + scene.name, scene.name == shown.scene->name)) {
       view.dialogs.open = Dialog::none;
       actions.use_scene(scene.name);
     }

@@ -149,8 +149,8 @@ void draw_panel(ForceCurves& curves, const WindowView& shown, ViewState& view, c
   // The plots share the height that the parts of fixed size leave.
   // The loop's lines keep room for three, so that nothing moves when one of them is wrapped.
   const float health_room = std::max(3.0F * line, view.health_px);
-  const float rows =
-      static_cast<float>(std::clamp<std::size_t>(models.listed().size(), 2, 8)) + (shown.has_material ? 2.0F : 1.0F);
+  const float rows = static_cast<float>(std::clamp<std::size_t>(models.listed().size(), 2, 8)) +
+                     (shown.scene->has_material() ? 2.0F : 1.0F);
   const float table = rows * (ImGui::GetTextLineHeight() + 2.0F * ImGui::GetStyle().CellPadding.y + 1.0F) +
                       0.28F * ImGui::GetFontSize() + 3.0F;
   const float titles = line * 3.4F;

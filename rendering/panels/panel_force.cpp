@@ -14,6 +14,8 @@ constexpr float kSelectedLine_px = 2.0F;
 constexpr float kColumn_px = 2.6F;
 // Range of the difference view on both sides of 0: three times the height of the band.
 constexpr double kDifference_jnd = 3.0;
+// Factor on the strongest press for the axes, because a hand briefly exceeds the press that it aims at.
+constexpr double kUsualOverStrongest = 1.5;
 constexpr float kPredictedAlpha = 0.28F;
 constexpr std::size_t kLongestPress = 30'000;  // ticks
 // Largest number of points of a curve over depth: one for every few ticks in ten seconds.
@@ -246,7 +248,8 @@ void ForceCurves::draw(const WindowView& shown, ViewState& view, const UiStyle& 
   columns_.gather(*shown.history, shown.models.jnd, shown.models.slots.size(), drawing.end_s - view.time.shown_s,
                   drawing.end_s, count);
   const double highest_N = 1.05 * columns_.highest_force_N();
-  force_scale_N_ = eased_scale(force_scale_N_, std::max({1.0, shown.usual_force_N, highest_N}));
+  force_scale_N_ =
+      eased_scale(force_scale_N_, std::max({1.0, kUsualOverStrongest * shown.scene->strongest_press_N, highest_N}));
   drawing.draw_titles_of_force(kLeftShare * all);
   drawing.draw_force({kLeftShare * all - ImGui::GetStyle().ItemSpacing.x, force_height}, force_scale_N_);
   ImGui::SameLine();

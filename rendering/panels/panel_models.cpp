@@ -298,7 +298,7 @@ void draw_model_table(const WindowView& window, ViewState& view, const UiStyle& 
       rows.draw_waiting(index);
     }
   }
-  if (window.has_material) {
+  if (window.scene->has_material()) {
     ImGui::TableNextRow();
     ImGui::TableSetColumnIndex(kName);
     rows.draw_plus();

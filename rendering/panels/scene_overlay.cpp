@@ -107,8 +107,8 @@ struct Overlay {
   void draw_title() const {
     ImGui::SetNextWindowPos({area.at.x + 2.0F, area.at.y + 2.0F});
     ImGui::Begin("over title", nullptr, kFloating);
-    ImGui::TextUnformatted(shown.title.c_str());
-    tip(shown.description.c_str());
+    ImGui::TextUnformatted(shown.scene->title.c_str());
+    tip(shown.scene->description.c_str());
     ImGui::SameLine(0.0F, ImGui::GetFontSize());
     const ForceScale& scale = shown.scale;
     const ImVec4 warning = paint(text_colour(kAboveJndColour, style.theme()));
@@ -323,7 +323,7 @@ struct Overlay {
   void draw_request() const {
     std::string words = shown.device_words;
     if (models().slots.empty() && shown.replay == nullptr) {
-      words = "No model yet, and no virtual material stands in for \"" + shown.title +
+      words = "No model yet, and no virtual material stands in for \"" + shown.scene->title +
               "\".\nDrop a recording (CSV) here to fit it or to replay it, or a model file (O lists them).\n"
               "S chooses a scene with a material.";
     }
@@ -391,7 +391,7 @@ struct Overlay {
 
 std::string press_hint(const WindowView& shown, ViewState& view) {
   constexpr double kPressed_N = 0.5;
-  if (shown.tool == nullptr || (shown.models.slots.empty() && !shown.has_material)) return {};
+  if (shown.tool == nullptr || (shown.models.slots.empty() && !shown.scene->has_material())) return {};
   if (shown.hand_explores) return "The hand moves by itself. Press the mouse button on a block and pull down.";
   if (shown.health.newest.rendered_N > kPressed_N) view.has_pressed = true;
   return view.has_pressed ? "" : "Press the mouse button on a block and pull down; let go to lift the probe.";

@@ -5,9 +5,6 @@
 namespace palpate {
 namespace {
 
-// Factor on the strongest press for the axes, because a hand briefly exceeds the press that it aims at.
-constexpr double kUsualOverStrongest = 1.5;
-
 // The slots with a block. If there is too little room, the active model and that of the verdict come first.
 std::vector<std::size_t> slots_of_blocks(const ModelsView& models, bool reference, std::size_t block_count) {
   const std::size_t room = reference ? block_count - 1 : block_count;
@@ -169,11 +166,8 @@ WindowView window_view(const LiveSession& session, const ViewState& view) {
                   .faults = session.faults().events(),
                   .alarms = session.alarms(),
                   .device_name = session.device_name()};
-  shown.scene = session.scene().name;
-  shown.title = session.scene().title;
-  shown.description = session.scene().description;
+  shown.scene = &session.scene();
   shown.device_words = session.device_words();
-  shown.has_material = session.scene().has_material();
   shown.tool = session.tool_input();
   shown.hand_explores = shown.tool != nullptr && shown.tool->hand_is_exploring();
   shown.renders_force = session.renders_force();
@@ -194,7 +188,6 @@ WindowView window_view(const LiveSession& session, const ViewState& view) {
                           : shown.replay != nullptr                                ? "as recorded"
                                                                                    : "the real block";
   shown.reference_words = session.reference_words();
-  shown.usual_force_N = kUsualOverStrongest * session.scene().strongest_press_N;
   shown.usual_depth_m = session.models().trained_depth_m();
   const bool stands = shown.replay != nullptr && shown.replay->paused() && shown.history->size() > 0;
   shown.now_s = stands ? (*shown.history)[shown.history->size() - 1].loop_time_s : steady_now_s();

@@ -271,11 +271,10 @@ struct HealthView {
 struct WindowView {
   ModelsView models;
   HealthView health;
-  std::string scene, title, description;
-  std::string device_words;    // what the user has to do so that the device renders force; may be empty
-  bool has_material = false;   // models can be fitted
-  ToolInput* tool = nullptr;   // null: a mouse cannot move the tool
-  bool hand_explores = false;  // the tool moves by itself
+  const Scene* scene = nullptr;  // not null in a result of window_view
+  std::string device_words;      // what the user has to do so that the device renders force; may be empty
+  ToolInput* tool = nullptr;     // null: a mouse cannot move the tool
+  bool hand_explores = false;    // the tool moves by itself
   bool renders_force = false;
   bool settled = false;  // no model is still to be fitted
   ForceScale scale;
@@ -289,8 +288,7 @@ struct WindowView {
   std::string reference_block;  // name of the block of the reference
   std::string reference_words;
   double now_s = 0.0;          // loop time at the right edge of running curves: now; of a paused replay its last tick
-  double usual_force_N = 0.0;  // the axes extend at least to this force and this depth
-  double usual_depth_m = 0.0;
+  double usual_depth_m = 0.0;  // the axes extend at least to this depth
   const ForceHistory* history = nullptr;        // of the session or of a test; not null in a result of window_view
   std::shared_ptr<const ForceHistory> of_test;  // keeps that of a test
 };

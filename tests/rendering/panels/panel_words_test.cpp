@@ -131,10 +131,12 @@ TEST(PanelWords, TwoModelsAreComparedAloneAndASceneThatCannotMoveSaysNothing) {
   WindowView shown;
   ViewState view;
   MouseDevice mouse;
+  Scene scene;
   shown.tool = &mouse;
+  shown.scene = &scene;
   shown.hand_explores = true;
   EXPECT_EQ(press_hint(shown, view), "") << "no model, no material";
-  shown.has_material = true;
+  scene.material = "skin";
   EXPECT_NE(press_hint(shown, view).find("pull down"), std::string::npos);
   shown.hand_explores = false;
   shown.health.newest.rendered_N = 1.0;
