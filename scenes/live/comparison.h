@@ -73,16 +73,24 @@ struct HistoryPoint {
 
 class ForceHistory {
  public:
-  // `most`: points that are kept, so that a session of hours does not grow; by default one per millisecond.
-  explicit ForceHistory(std::size_t most = static_cast<std::size_t>(kHistory_s * 1000.0)) : most_(most) {}
+  // `capacity`: allocated once, so that a session of hours does not grow; by default one point per millisecond.
+  explicit ForceHistory(std::size_t capacity = static_cast<std::size_t>(kHistory_s * 1000.0)) : points_(capacity) {}
 
-  std::size_t size() const noexcept { return points_.size(); }
+  std::size_t size() const noexcept { return size_; }
   // 0 is the oldest.
-  const HistoryPoint& operator[](std::size_t index) const noexcept { return points_[index]; }
+  const HistoryPoint& operator[](std::size_t index) const noexcept {
+    const std::size_t at = first_ + index;
+    return points_[at < points_.size() ? at : at - points_.size()];
+  }
   // Index of the first point at `loop_time_s` or later; size() if there is none. O(log size).
   std::size_t first_at(double loop_time_s) const noexcept {
-    const auto first = std::ranges::lower_bound(points_, loop_time_s, {}, &HistoryPoint::loop_time_s);
-    return static_cast<std::size_t>(first - points_.begin());
+    std::size_t from = 0;
+    for (std::size_t to = size_; from < to;) {
+      const std::size_t middle = from + (to - from) / 2;
+      const bool before = (*this)[middle].loop_time_s < loop_time_s;
+      (before ? from : to) = before ? middle + 1 : middle;
+    }
+    return from;
   }
   // The last point up to `loop_time_s`; null: there is none.
   const HistoryPoint* last_until(double loop_time_s) const noexcept {
@@ -94,13 +102,17 @@ class ForceHistory {
       point.force_N[slot] = point.sustained_over_jnd[slot] = point.press_over_jnd[slot] = kMissing;
   }
   void append(const HistoryPoint& point) {
-    if (points_.size() == most_) points_.pop_front();
-    points_.push_back(point);
+    if (size_ < points_.size()) {
+      points_[size_++] = point;
+    } else {
+      points_[first_] = point;
+      first_ = (first_ + 1) % points_.size();
+    }
   }
 
  private:
-  std::deque<HistoryPoint> points_;
-  std::size_t most_;
+  std::vector<HistoryPoint> points_;
+  std::size_t first_ = 0, size_ = 0;
 };
 
 // The errors of one model over an endless stream of ticks: constant time per tick and bounded memory. The 99 % error

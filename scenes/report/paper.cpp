@@ -362,15 +362,11 @@ Plot dimension_figure(const PaperData& data) {
 }
 
 Plot jnd_figure(const PaperData& data) {
-  Plot plot{.name = "figure_3",
-            .columns = 2,
-            .height = 1.5,
-            .caption =
-                "Figure 3: JND of twelve simulated subjects in the paper's study, with standard errors, and the point "
-                "of Pang, "
-                "Tan & Durlach (1991); the line through them, and the paper's conservative line, 0.065 N + 6.33 %. The "
-                "paper's "
-                "13.3 % at 2.5 N is the only one of its points with a published value."};
+  Plot plot{.name = "figure_3", .columns = 2, .height = 1.5};
+  plot.caption =
+      "Figure 3: JND of twelve simulated subjects in the paper's study, with standard errors, and the point of Pang, "
+      "Tan & Durlach (1991); the line through them, and the paper's conservative line, 0.065 N + 6.33 %. The paper's "
+      "13.3 % at 2.5 N is the only one of its points with a published value.";
   for (const bool relative : {false, true}) {
     Series study{"simulated study", kGreedyMethod.colour, Mark::bars, {}};
     Series other{"Pang et al.", kRandomMethod.colour, Mark::bars, {}};
