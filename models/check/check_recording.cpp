@@ -102,7 +102,7 @@ class Checker {
 
   // Without force or motion all other checks are meaningless.
   bool check_signal() {
-    const bool force = force_range_N() > std::max(kForceFloor_N, 5.0 * noise_N_);
+    const bool force = force_range_N() > std::max(kForceFloor_N, noise_known_ ? 5.0 * noise_N_ : 0.0);
     // A few rows elsewhere are faults of the encoder and no motion.
     const double rest_m = median_of(positions_m());
     const auto moved = static_cast<std::size_t>(std::ranges::count_if(
@@ -220,9 +220,10 @@ class Checker {
           words("the position has steps of %.3g um", 1e6 * sensor.encoder_step_m),
           coarse ? "the depth spans fewer than 50 steps: use a finer encoder or press deeper" : "");
     }
-    const bool loud = noise_N_ > 0.5 * request_.jnd.offset_N;
-    add("force_noise", loud ? Severity::warning : Severity::note, noise_N_,
-        words("the force noise is %.3g mN RMS", 1e3 * noise_N_),
+    const bool loud = noise_known_ && noise_N_ > 0.5 * request_.jnd.offset_N;
+    add(noise_known_ ? "force_noise" : "force_noise_unknown", loud ? Severity::warning : Severity::note, noise_N_,
+        noise_known_ ? words("the force noise is %.3g mN RMS", 1e3 * noise_N_)
+                     : "the force noise could not be determined: between rows the force changes by more than its noise",
         loud ? "the noise hides small forces: shield or filter the sensor, and compare errors with the noise floor"
              : "");
   }
@@ -411,6 +412,7 @@ class Checker {
   const Recording& recording_ = prepared_.recording;
   const SurfaceEstimate& surface_ = prepared_.surface;
   const double noise_N_ = white_force_noise_N(prepared_);
+  const bool noise_known_ = is_force_noise_known(prepared_);
   double lag_s_ = 0.0;
   RecordingCheck check_;
   RecordingMeasures& measures_ = check_.measures;

@@ -56,6 +56,11 @@ RecordingMeasures measure_recording(const Recording& recording, double surface_m
 // rows, which for white noise is the 0.2 quantile of its estimates, 0.87 of the standard deviation (simulated, 20,000
 // windows).
 double white_force_noise_N(const PreparedRecording& prepared);
+// Whether these second differences are those of white noise: with their neighbours they correlate by -2/3, and by more
+// where motion or a filter changes the force between rows. In nine simulated materials with 5 mN of white noise it is
+// -0.41 to 0.57 at 10 to 100 Hz (the estimate is 1.8 times too high and more) and -0.58 to -0.60 from 500 Hz on; the
+// limit of -0.45 leaves 38 of 54 public recordings. False with fewer rows than a window.
+bool is_force_noise_known(const PreparedRecording& prepared);
 
 // How the force zero changes over a recording, from groups of its rows in free air, of equal size: a line and a step.
 // f(t) = a + b t + c H(t - t0) is fitted to the medians of the groups.
@@ -79,6 +84,7 @@ OffsetEstimate find_force_lag(const std::vector<Sample>& rows, double force_nois
 // The figures of merit of a perfect model, whose error e is normal with the standard deviation s of the force sensor:
 //   within the JND = mean over the samples of P(|e| <= JND(f));  99 % error: the q with mean P(|e| <= q JND(f)) = 0.99
 struct NoiseFloor {
+  bool known = true;           // false: the noise of a recording is not, and the figures limit nothing
   double force_noise_N = 0.0;  // RMS of s over the samples in contact
   double within_jnd = 1.0, p99_error_over_jnd = 0.0;
 };

@@ -166,6 +166,26 @@ double white_force_noise_N(const PreparedRecording& prepared) {
   return prepared.force_noise_N / kQuietShare;
 }
 
+bool is_force_noise_known(const PreparedRecording& prepared) {
+  constexpr std::size_t kWindowRows = 50;
+  const std::vector<Sample>& rows = prepared.rows;
+  std::vector<std::pair<double, double>> windows;  // sums of squares and of products of neighbours, N^2
+  for (std::size_t end = kWindowRows; end <= std::min(rows.size(), kSensorIdentificationRows); end += kWindowRows) {
+    double before_N = 0.0;
+    auto& [squares_N2, products_N2] = windows.emplace_back();
+    for (std::size_t i = end - kWindowRows + 2; i < end; ++i) {
+      const double second_N = rows[i].force_N - 2.0 * rows[i - 1].force_N + rows[i - 2].force_N;
+      squares_N2 += second_N * second_N;
+      products_N2 += second_N * std::exchange(before_N, second_N);
+    }
+  }
+  std::ranges::sort(windows);
+  windows.resize((windows.size() + 4) / 5);
+  double excess_N2 = 0.0;  // of the products over those of the largest correlation
+  for (const auto& [squares_N2, products_N2] : windows) excess_N2 += products_N2 + 0.45 * squares_N2;
+  return !windows.empty() && excess_N2 <= 0.0;
+}
+
 namespace {
 
 constexpr std::size_t kLeastRows = 10;  // of a median
@@ -267,6 +287,7 @@ NoiseFloor noise_floor(const std::vector<const PreparedRecording*>& recordings, 
   std::vector<double> noise_over_jnd;
   double squares_N2 = 0.0;
   for (const PreparedRecording* prepared : recordings) {
+    if (!is_force_noise_known(*prepared)) return {.known = false};
     const std::vector<RecordingRow>& rows = prepared->recording.rows;
     const SurfaceEstimate& surface = prepared->surface;
     const double noise_N = white_force_noise_N(*prepared);

@@ -102,7 +102,8 @@ Table recordings_table(const ReportData& data) {
     table.add({"deepest_m", "deepest [mm]", kInMilli},
               std::ranges::max_element(rows, {}, &RecordingRow::position_m)->position_m);
     table.add({"largest_force_N", "largest [N]"}, largest_force_N(set.all[i]->recording));
-    table.add({"force_noise_N", "force noise [mN]", kInMilli}, set.all[i]->force_noise_N);
+    table.add({"force_noise_N", "force noise [mN]", kInMilli},
+              is_force_noise_known(*set.all[i]) ? set.all[i]->force_noise_N : kNoNumber);
     table.add({"accelerometer", "accelerometer"}, yes_or_no(columns.acceleration));
     table.add({"content_hash", ""}, hash);
   }

@@ -184,9 +184,9 @@ OrderedJson report_json(const ReportData& data, const ReportRequest& request, co
           {"virtual_recordings", request.train.empty()},
           {"folds", data.recordings.folds.size() > 1 ? data.recordings.folds.size() : 0},
           {"noise_floor",
-           {{"force_noise_N", data.floor.force_noise_N},
+           {{"force_noise_N", data.floor.known ? OrderedJson(data.floor.force_noise_N) : OrderedJson()},
             {"within_jnd", data.floor.within_jnd},
-            {"p99_error_over_jnd", data.floor.p99_error_over_jnd}}},
+            {"p99_error_over_jnd", data.floor.known ? OrderedJson(data.floor.p99_error_over_jnd) : OrderedJson()}}},
           {"surface_offset_m", offsets},
           {"force_zero_N", zeros},
           {"correction_used", data.corrects},
@@ -242,10 +242,14 @@ std::string notes_html(const ReportData& data, const ReportRequest& request) {
   if (largest_N > kStudiedUpTo_N)
     notes.push_back("The JND was measured up to 2.5 N; these forces go up to " + three_digits(largest_N) +
                     " N, where it is extrapolated.");
-  notes.push_back("A perfect model would have " + percent(data.floor.within_jnd) +
-                  " within the JND and 99 % of its errors below " + three_digits(data.floor.p99_error_over_jnd) +
-                  " JND, because of the noise of the force sensor (" + three_digits(1e3 * data.floor.force_noise_N) +
-                  " mN, from second differences in the quietest fifth of each test recording, without drift).");
+  notes.push_back(
+      !data.floor.known
+          ? "The errors of a perfect model could not be determined: between the rows of a test recording the force "
+            "changes by more than its noise."
+          : "A perfect model would have " + percent(data.floor.within_jnd) +
+                " within the JND and 99 % of its errors below " + three_digits(data.floor.p99_error_over_jnd) +
+                " JND, because of the noise of the force sensor (" + three_digits(1e3 * data.floor.force_noise_N) +
+                " mN, from second differences in the quietest fifth of each test recording, without drift).");
   notes.push_back(accelerometer ? "With the accelerometer of the recordings."
                                 : "From positions alone, without an accelerometer.");
   return list_html(notes);

@@ -399,6 +399,12 @@ TEST(NoiseFloor, IsThatOfANormalErrorAtOneForce) {
   const double noise_over_jnd = floor.force_noise_N / 0.065;
   EXPECT_NEAR(floor.within_jnd, std::erf(1.0 / (std::sqrt(2.0) * noise_over_jnd)), 0.01);
   EXPECT_NEAR(floor.p99_error_over_jnd, 2.576 * noise_over_jnd, 0.03);
+  // At 20 Hz the motion changes the force by more than the noise from row to row.
+  for (std::size_t i = 0; i < recording.rows.size(); ++i)
+    recording.rows[i].force_N += std::sin(0.5 * static_cast<double>(i));
+  const PreparedRecordingPointer moved = prepare_recording(recording);
+  EXPECT_FALSE(noise_floor({moved.get()}, JndLine{0.065, 0.0}).known);
+  EXPECT_TRUE(floor.known);
 }
 
 }  // namespace

@@ -62,8 +62,10 @@ MEANING = {
     "max_error_over_jnd": "largest error, in JND",
     "median_bound_N": "median of the 95 % bound",
     "missed": "what is not as expected; empty if nothing",
-    "noise_floor_within_jnd": "share within one JND of a perfect model, because of the noise of the force",
-    "notes": "what was selected or assumed",
+    "force_noise_N": "null where it could not be determined (`force_noise_unknown` of check)",
+    "noise_floor_within_jnd": "share within one JND of a perfect model, because of the noise of the force; 1 with the "
+                              "finding `force_noise_unknown`: the noise could not be determined",
+    "notes": "what was selected or assumed; of a fit with a grid, the error is that before it",
     "out_of_domain_samples": "samples in contact away from the training data",
     "p99_error_over_jnd": "99 % of the errors are below, in JND",
     "rank": "number of independent equations for the weights; null where there are none",
