@@ -115,10 +115,10 @@ class Checker {
           "check the sensor's cable, and check that force_N has the right column");
     }
     if (!motion) {
-      const std::size_t rest = recording_.rows.size() - moved;
       add("no_motion", Severity::fatal, travel_m(),
           travel_m() > kLeastTravel_m
-              ? words("%zu of %zu rows are at one position", rest, recording_.rows.size())
+              ? words("the tool moves in only %zu of %zu rows, fewer than %zu", moved, recording_.rows.size(),
+                      kRecordingMinimumRows)
               : words("the position changes by only %.3g mm over the whole recording", 1e3 * travel_m()),
           recording_.rows.size() < kShortRows
               ? "record for longer: approach the material from free air, and press several times"
