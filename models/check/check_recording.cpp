@@ -53,6 +53,9 @@ std::string words(const char* format, Values... values) {
   return text;
 }
 
+// With three digits, and never with an exponent: 0.125, 36.3, 3600.
+std::string plain(double value) { return value < 1000.0 ? general(value, 3) : fixed(value, 0); }
+
 // A force that is later brings forces of presses into free air, which are no drift.
 constexpr double kLateForce_s = 0.05;
 
@@ -198,7 +201,8 @@ class Checker {
   void check_sampling() {
     const double rate_Hz = static_cast<double>(prepared_.stride) / measures_.median_step_s;
     add("rate", Severity::note, rate_Hz,
-        words("the recording has %.4g rows per second and lasts %.3g s", rate_Hz, measures_.duration_s),
+        "the recording has " + (rate_Hz < 1e4 ? general(rate_Hz, 4) : fixed(rate_Hz, 0)) +
+            " rows per second and lasts " + plain(measures_.duration_s) + " s",
         rate_Hz < kSlowRate_Hz ? "this rate suits only slow motion: record presses by hand at 500 Hz or more" : "");
     if (prepared_.stride > 1) {
       const auto every = static_cast<double>(prepared_.stride);
@@ -353,9 +357,9 @@ class Checker {
   void check_exploration() {
     const double from_m = measures_.outermost_contact_m;
     add("strokes", Severity::note, measures_.strokes,
-        words("the recording has %d %s with %.3g s in contact, from %.4g to %.4g mm", measures_.strokes,
+        words("the recording has %d %s with %s s in contact, from %.4g to %.4g mm", measures_.strokes,
               measures_.strokes == 1 ? "stroke" : "strokes",
-              static_cast<double>(measures_.contact_rows) * measures_.median_step_s, 1e3 * from_m,
+              plain(static_cast<double>(measures_.contact_rows) * measures_.median_step_s).c_str(), 1e3 * from_m,
               1e3 * measures_.highest_position_m),
         measures_.strokes < kFewStrokes ? "record more strokes of different depths and speeds" : "");
     const double pressed_m = measures_.highest_position_m - from_m;
