@@ -246,6 +246,7 @@ OffsetEstimate unless_force_offset(OffsetEstimate shift, const CostFunction& cos
   shift.at = 0.0;
   shift.standard_error = kUnknownError;
   shift.force_offset_N = best.at;
+  shift.force_offset_better = is_significantly_worse(shift.minimum, best.costs);
   return shift;
 }
 

@@ -101,8 +101,9 @@ struct OffsetEstimate {
   bool identified = false;
   double minimum_at = 0.0;  // the minimum, identified or not, and its costs
   BlockCosts minimum{};
-  // N: a force offset that explains the data as well, so that `at` is not identified; 0: there is none.
+  // N: a force offset that explains the data as well or better, so that `at` is not identified; 0: there is none.
   double force_offset_N = 0.0;
+  bool force_offset_better = false;  // it explains them significantly better
 };
 
 struct SearchRange {

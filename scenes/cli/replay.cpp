@@ -228,9 +228,10 @@ void print_ambiguity_note(const std::vector<ReplayedModel>& models) {
   const auto first = std::ranges::find_if(models, ambiguous);
   if (first == models.end()) return;
   std::printf(
-      "note: a surface at %+.3f mm for %.64s and a force offset of %+.3f N explain this recording equally well: "
-      "neither is corrected\n",
-      1e3 * first->surface.minimum_at, first->loaded.name.c_str(), first->surface.force_offset_N);
+      "note: for %.64s a force offset of %+.3f N explains this recording %s a surface at %+.3f mm: neither is "
+      "corrected\n",
+      first->loaded.name.c_str(), first->surface.force_offset_N,
+      first->surface.force_offset_better ? "better than" : "as well as", 1e3 * first->surface.minimum_at);
 }
 
 void print_recording(const ReplayedRecording& replayed, bool all) {

@@ -72,9 +72,10 @@ std::optional<OtherZero> other_zero(const ReportData& data) {
       !(ambiguous && use.errors.within_jnd < kGoodShare))
     return {};
   OtherZero found{farthest->recording->recording.name};
-  if (surface.at != 0.0 || ambiguous) found.surface_m = surface.minimum_at;
   // The zero of the force in free air is subtracted already.
   if (ambiguous && !farthest->recording->surface.air.found) found.force_N = surface.force_offset_N;
+  if (surface.at != 0.0 || (ambiguous && (found.force_N == 0.0 || !surface.force_offset_better)))
+    found.surface_m = surface.minimum_at;
   return found;
 }
 

@@ -362,6 +362,10 @@ TEST(ProfileSearch, WhatAForceOffsetExplainsAsWellIsNotTold) {
   EXPECT_EQ(both.at, 0.0);
   EXPECT_NEAR(both.minimum_at, 1.0, 0.01);
   EXPECT_NEAR(both.force_offset_N, 3.0, 0.05);
+  EXPECT_FALSE(both.force_offset_better);
+  EXPECT_TRUE(unless_force_offset(
+                  shift, [](double f_N) { return bowl(f_N / 3.0, 1.0, 0.001); }, 10.0)
+                  .force_offset_better);
   const OffsetEstimate only = unless_force_offset(
       shift, [](double f_N) { return bowl(f_N / 3.0, 1.0, 9.0); }, 10.0);
   EXPECT_TRUE(only.identified);
