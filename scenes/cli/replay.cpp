@@ -390,7 +390,13 @@ Status run(const Options& options) {
   }
   const auto models = load_models(options.models, options.names);
   if (!models) return models.error();
+  std::string header = "," + forces_header(*models, distinct_features(*models));
+  header.back() = ',';
   for (const LoadedModel& one : *models) {
+    const std::string column = "," + one.name + "_N,";  // in the header twice, if it is there already
+    if (!options.out.empty() && header.find(column) < header.rfind(column))
+      return Error{"found the model name " + one.name + ", which gives a column that " + options.out +
+                   " has already; give another with --name"};
     if (options.out.empty() || one.name.find_first_of(",\"\r\n") == std::string::npos) continue;
     return Error{"found the model name " + printable(one.name) +
                  ", expected one without comma, quote and line break, " +
