@@ -252,7 +252,8 @@ Result<MethodFit> fit_method(const PreparedTraining& prepared, const ModelPlan& 
     fit.choices = *selected;
     fit.error_over_jnd = selected->error_over_jnd;
     sites = chosen_sites(*selected, prepared, data);
-    fit.notes.push_back(choices_text(*selected, asked.method->can_take(kTakesKernel)));
+    fit.notes.push_back(choices_text(*selected, asked.method->can_take(kTakesKernel)) +
+                        (asked.method->can_take(kTakesGrid) ? " of the interpolant, before the grid" : ""));
   }
   const CorrectionPtr from =
       base == nullptr || asked.method->base == nullptr ? nullptr : base->model->data().correction;

@@ -126,7 +126,13 @@ void print_fit(const PreparedTraining& prepared, const MethodFit& fit, double se
   if (const std::string bands = relaxation_bands(data.features); !bands.empty()) print_line("relaxation times", bands);
   if (prepared.correction) print_line("correction", correction_text(*prepared.correction));
   for (const std::string& note : fit.notes)
-    print_line(fit.choices && note == choices_text(*fit.choices, fit.kernel.has_value()) ? "selected" : "note", note);
+    print_line(
+        fit.choices && note.starts_with(choices_text(*fit.choices, fit.kernel.has_value())) ? "selected" : "note",
+        note);
+  for (const OptionText& option : arguments.options)
+    if (arguments.plan.features == FeatureChoice::given && option.name == "features" &&
+        ("," + option.value + ",").find(",depth,") == std::string::npos)
+      print_line("note", "depth is always included");
   print_line("training <= JND", fixed(100.0 * provenance.training_within_jnd, 2) + " %" +
                                     (accelerometer ? " (with the accelerometer)" : " (from positions alone)"));
   print_line("written", arguments.out);
