@@ -5,6 +5,7 @@
 
 #include <array>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -155,6 +156,8 @@ Result<std::vector<CheckedFile>> check_recording_files(const std::vector<std::st
 std::vector<PreparedRecordingPointer> training_recordings(std::vector<CheckedFile> files);
 // An error with the fatal findings of the first unusable file: "path: position_sign: ...; ...; force_sign: ...; ...".
 Status refuse_unusable(const std::vector<CheckedFile>& files);
+// The recording that `tests` continue. Errors: those of read_recording; one of `tests` has the same rows.
+Result<Recording> read_recording_before(const std::string& path, std::span<const CheckedFile> tests);
 // One line for each warning: "path: gap: ...; ...".
 std::vector<std::string> warning_lines(const std::vector<CheckedFile>& files);
 

@@ -200,6 +200,14 @@ Status refuse_unusable(const std::vector<CheckedFile>& files) {
   return {};
 }
 
+Result<Recording> read_recording_before(const std::string& path, std::span<const CheckedFile> tests) {
+  auto before = read_usable_recording(path);
+  for (const CheckedFile& test : tests)
+    if (before && test.prepared->content_hash == content_hash(*before))
+      return Error{"--after: found the rows of " + test.path + " itself, expected the recording that it continues"};
+  return before;
+}
+
 std::vector<std::string> warning_lines(const std::vector<CheckedFile>& files) {
   std::vector<std::string> lines;
   for (const CheckedFile& file : files) {

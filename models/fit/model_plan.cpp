@@ -253,8 +253,11 @@ Result<ModelPlan> parse_plan_options(const std::string& text) {
 
 Result<FeatureList> parse_feature_list(const std::string& text) {
   FeatureList list;
-  for (const std::string_view item : split(text, ','))
+  const auto items = split(text, ',');
+  for (const std::string_view item : items) {
+    if (std::ranges::count(items, item) > 1) return Error{found(item, "each feature once")};
     if (const Status status = add_item(item, list); !status) return status.error();
+  }
   if (list.features.size() > kMaxFeatures) {
     return Error{"found " + std::to_string(list.features.size()) + " features, expected at most " +
                  std::to_string(kMaxFeatures) + "; join relaxation times with +"};

@@ -40,13 +40,13 @@ Status run_report(Arguments arguments) {
   if (!arguments.after.empty() && arguments.test.empty())
     throw CLI::ValidationError("--after", "found no --test, expected recordings that continue another one; give them");
   ReportRequest& request = arguments.request;
+  auto checked = check_before_use(paths, check_request(*scene));
+  if (!checked) return checked.error();
   if (!arguments.after.empty()) {
-    auto after = read_usable_recording(arguments.after);
+    auto after = read_recording_before(arguments.after, std::span(*checked).subspan(arguments.train.size()));
     if (!after) return after.error();
     request.after = prepare_recording(std::move(*after));
   }
-  auto checked = check_before_use(paths, check_request(*scene));
-  if (!checked) return checked.error();
   request.scene = *scene;
   request.test_files = arguments.test;
   request.budget_ns = 1e9 * kHapticTick_s * 0.01 * arguments.budget_percent;

@@ -408,7 +408,7 @@ Status run(const Options& options) {
   if (!checked) return checked.error();
   std::optional<Recording> after;
   if (!options.after.empty()) {
-    auto read = read_usable_recording(options.after);
+    auto read = read_recording_before(options.after, *checked);
     if (!read) return read.error();
     after = std::move(*read);
   }

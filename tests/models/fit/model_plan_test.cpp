@@ -146,8 +146,9 @@ TEST(PlanOptions, RefuseWhatTheMethodDoesNotTake) {
 }
 
 TEST(FeatureListText, SaysWhatIsWrong) {
-  for (const char* text : {"", "depth,", "speed", "velocity,velocity", "maxwell", "maxwell:", "maxwell:-1",
-                           "maxwell:0.1+", "stops:0.1", "stops:0mm", "creep:", "creep:nan", "maxwell:1e999"})
+  for (const char* text :
+       {"", "depth,", "speed", "velocity,velocity", "depth,depth", "maxwell", "maxwell:", "maxwell:-1", "maxwell:0.1+",
+        "stops:0.1", "stops:0mm", "creep:", "creep:nan", "maxwell:1e999"})
     EXPECT_TRUE(test::has_parts(parse_feature_list(text), {"found \"", "expected "})) << text;
   EXPECT_EQ(
       message_of(parse_feature_list("velocity,maxwell:1,maxwell:2,maxwell:3,maxwell:4,maxwell:5,maxwell:6,creep:1")),

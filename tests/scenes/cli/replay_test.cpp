@@ -195,6 +195,9 @@ TEST_F(ReplayVerb, FailuresAreOneErrorLine) {
   EXPECT_TRUE(test::is_refused(run(std::vector<std::string>(17, models_[0])), 1, {"17 models", "16", "; "}));
   EXPECT_TRUE(test::is_refused(run({models_[0]}, {"--name", "a,b", "--out", folder_.file("forces.csv")}), 1,
                                {"a,b", "comma", "--name"}));
+  EXPECT_TRUE(test::is_refused(run({models_[0]}, {"--name", "force", "--out", folder_.file("forces.csv")}), 1,
+                               {"model name force,", "has already", "--name"}));
+  EXPECT_TRUE(test::is_refused(run({models_[0]}, {"--after", recording_}), 1, {"--after", recording_ + " itself"}));
   EXPECT_EQ(run({models_[0]}, {"--name", "a,b", "--json"}).exit_code, 0) << "no column is named";
   const std::string before = test::read_text(recording_);
   EXPECT_TRUE(test::is_refused(run({models_[0]}, {"--out", recording_, "--force"}), 1, {recording_, "--out", "; "}));
