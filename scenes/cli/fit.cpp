@@ -110,7 +110,10 @@ void print_fit(const PreparedTraining& prepared, const MethodFit& fit, double se
   const Provenance& provenance = data.provenance;
   if (!prepared.gains.empty()) {
     print_table(table_text(gains_table(prepared.gains)), true);
-    std::printf("\n");
+    std::printf(
+        "errors with all terms, and with all but this one (of depth-dependent relaxation: with the best, with none);\n"
+        "used: with a weight above 0, or selected, not by these errors alone; the names give the range of the times\n"
+        "tried, the line below that of the times used\n\n");
   }
   print_line("model", data.name + ", fitted in " + fixed(seconds, 2) + " s");
   if (const RbfFunction* const rbf = rbf_of(data.correction); rbf != nullptr && fit.rank > 0) {
