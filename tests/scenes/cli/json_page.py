@@ -25,7 +25,7 @@ VERBS = {
     "study simulate --discriminate": ["study", "simulate", "--discriminate", "rec.csv", "--model", "model.json",
                                       "--subjects", "2", "--out", "strokes"],
 }
-SLOW = ("report", "paper", "hard")
+SLOW = ("paper", "hard")
 ALSO = {"check": "`palpate record --json` prints the same object, for its recording.",
         "fit": "`palpate.Model.report` in Python is this object.",
         "replay": "An array of such objects for several recordings.",
