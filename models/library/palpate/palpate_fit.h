@@ -21,7 +21,7 @@ extern "C" {
  *   features    auto, scene (those of 2009), or a list such as depth,velocity,maxwell:0.17 [auto]
  *   kernel      auto, cubic, linear, thin-plate [auto]
  *   grid        of voxel: nodes per feature such as 25x11x11x11 [automatic]
- *   seed        of random and greedy [1]
+ *   seed        of random, kdtree and greedy, alone or after trend+ [1]
  * progress: called from time to time with the finished fraction and `context`; returns 0 to interrupt; may be NULL.
  *
  * Slow side: allocates, and may take minutes. Returns NULL, see error: a sample or an option is not valid; a recording

@@ -130,7 +130,7 @@ def fit(recordings: object, method: str = "trend+greedy", centres: int | None = 
     grid : str or list of int, optional
         Of voxel: nodes per feature, e.g. ``[25, 11, 11, 11]``.
     seed : int, optional
-        Of random and greedy [1].
+        Of random, kdtree and greedy, alone or after ``trend+`` [1].
     progress : callable, optional
         Called from time to time with the finished fraction; if it returns False, the fit ends.
 
