@@ -25,6 +25,9 @@ namespace palpate::cli {
 namespace {
 
 constexpr auto kPause = std::chrono::milliseconds(100);
+// The program of a bridge starts within this time. Until then late reports and unconfirmed commands are normal.
+constexpr double kStart_s = 1.0;
+constexpr std::uint32_t kNormalAtStart = device_fault::kLate | device_fault::kWriteStalled;
 // Of the guide.
 constexpr double kPeriod_s = 2.0;
 constexpr double kRest = 10.0;  // pause after a check, as a multiple of its duration
@@ -93,8 +96,9 @@ class RecordProgress {
   explicit RecordProgress(bool measures_force) : measures_force_(measures_force) {}
   ~RecordProgress() { clear(); }
 
-  void show(const LoopSnapshot& snapshot, const RecordingStatus& status) {
-    const std::uint32_t faults = snapshot.device_faults_latched;
+  // `normal`: faults that are not to be shown.
+  void show(const LoopSnapshot& snapshot, const RecordingStatus& status, std::uint32_t normal) {
+    const std::uint32_t faults = snapshot.device_faults_latched & ~normal;
     for (const std::string& words : device_fault_words(faults & ~shown_faults_)) line("device: " + words);
     shown_faults_ |= faults;
     if (!terminal_) return;
@@ -169,7 +173,11 @@ Result<std::string> record(const RecordOptions& options, const CheckRequest& che
   std::optional<Notice> outcome;
   for (const double start_s = steady_now_s(); !outcome && stop_requested() == 0;) {
     std::this_thread::sleep_for(kPause);
-    progress.show(loop.newest(), recorder.status());
+    const LoopSnapshot newest = loop.newest();
+    progress.show(newest, recorder.status(), controls.acknowledged == 0 ? kNormalAtStart : 0);
+    const bool on_time = newest.device.interval_s > 0.0 && (newest.device.faults & kNormalAtStart) == 0;
+    if (on_time || steady_now_s() - start_s > kStart_s) controls.acknowledged = 1;  // clears the latched faults
+    loop.set_controls(controls);
     zero_on_enter(device, loop.newest().device, zeroing_announced, progress);
     if (options.guide) {
       for (const std::string& line : guide.update(steady_now_s())) progress.line(line);
