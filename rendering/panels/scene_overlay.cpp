@@ -28,6 +28,8 @@ float replay_height(const WindowView& shown, const UiStyle& style) {
 bool has_corner(const UiStyle& style, const SceneArea& area) {
   return area.size.x > 40.0F * height_of(style.fonts().body);
 }
+// Height of the two sliders below the headline that scale the rendered force.
+float feel_height(const UiStyle& style) { return 3.9F * height_of(style.fonts().body); }
 float big_number_height(const UiStyle& style, float lift) {
   return lift + height_of(style.fonts().big) + 1.9F * height_of(style.fonts().body);
 }
@@ -83,25 +85,28 @@ struct Overlay {
     list.AddRectFilled(low, {at.x - 0.55F * margin.x, high.y}, stripe, 3.0F);
   }
 
-  // Draws the sliders that scale the rendered force. Returns the y below them.
-  float draw_feel(float top_px) const {
+  // Draws the sliders that scale the rendered force.
+  void draw_feel(float top_px) const {
     ImGui::SetNextWindowPos({area.at.x + 2.0F, top_px});
     ImGui::Begin("over feel", nullptr, kFloating);
     auto stiffness = static_cast<float>(shown.scale.stiffness);
     auto damping = static_cast<float>(shown.scale.damping_Ns_per_m);
     ImGui::PushItemWidth(0.28F * area.size.x);
-    bool moved = ImGui::SliderFloat("stiffness", &stiffness, static_cast<float>(ForceScale::kLeast),
-                                    static_cast<float>(ForceScale::kMost), "x %.2f",
-                                    ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp);
-    moved = ImGui::SliderFloat("damping", &damping, 0.0F, static_cast<float>(ForceScale::kMostDamping_Ns_per_m),
-                               "+ %.1f N s/m", ImGuiSliderFlags_AlwaysClamp) ||
+    // The numbers are beside the sliders, because the grip would hide them.
+    ImGui::PushStyleColor(ImGuiCol_Text, paint(text_colour(kAboveJndColour, style.theme())));
+    bool moved =
+        ImGui::SliderFloat(("in the hand: stiffness x " + fixed(shown.scale.stiffness, 2) + "###stiffness").c_str(),
+                           &stiffness, static_cast<float>(ForceScale::kLeast), static_cast<float>(ForceScale::kMost),
+                           "", ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp);
+    moved = ImGui::SliderFloat(("damping + " + fixed(shown.scale.damping_Ns_per_m, 1) + " N s/m###damping").c_str(),
+                               &damping, 0.0F, static_cast<float>(ForceScale::kMostDamping_Ns_per_m), "",
+                               ImGuiSliderFlags_AlwaysClamp) ||
             moved;
+    ImGui::PopStyleColor();
     ImGui::PopItemWidth();
     tip("Changes only the rendered force. Curves and figures show the unchanged models. F ends it.");
-    const float below_px = top_px + ImGui::GetWindowHeight();
     ImGui::End();
     if (moved) actions.scale({stiffness, damping});
-    return below_px;
   }
 
   void draw_title() const {
@@ -110,23 +115,17 @@ struct Overlay {
     ImGui::TextUnformatted(shown.scene->title.c_str());
     tip(shown.scene->description.c_str());
     ImGui::SameLine(0.0F, ImGui::GetFontSize());
-    const ForceScale& scale = shown.scale;
     const ImVec4 warning = paint(text_colour(kAboveJndColour, style.theme()));
-    if (view.scales_force) {
-      ImGui::TextColored(warning, "in the hand: stiffness x %.2f, damping + %.1f", scale.stiffness,
-                         scale.damping_Ns_per_m);
+    if (view.worst) {
+      const std::string& name = models().slots[view.worst->slot].name;
+      ImGui::TextColored(warning, "largest error of %s in %s: %s (Space goes on)", name.c_str(),
+                         view.worst->history ? "the test" : "this session", view.worst->words.c_str());
     } else {
-      if (view.worst) {
-        const std::string& name = models().slots[view.worst->slot].name;
-        ImGui::TextColored(warning, "largest error of %s in %s: %s (Space goes on)", name.c_str(),
-                           view.worst->history ? "the test" : "this session", view.worst->words.c_str());
-      } else {
-        ImGui::TextDisabled("drawn twice as deep");
-      }
-      if (view.exaggerated) {
-        ImGui::SameLine(0.0F, ImGui::GetFontSize());
-        ImGui::TextColored(warning, "arrows: difference x 10");
-      }
+      ImGui::TextDisabled("drawn twice as deep");
+    }
+    if (view.exaggerated) {
+      ImGui::SameLine(0.0F, ImGui::GetFontSize());
+      ImGui::TextColored(warning, "arrows: difference x 10");
     }
     ImGui::End();
   }
@@ -309,15 +308,6 @@ struct Overlay {
     ImGui::End();
   }
 
-  void draw_recording() const {
-    const std::string text = recording_words(shown.recording);
-    if (text.empty()) return;
-    const ImVec2 size = text_size(fonts().body, text);
-    const ImVec2 at(area.at.x + area.size.x - size.x - size.y, area.at.y + 0.9F * size.y);
-    list().AddCircleFilled({at.x - 0.7F * size.y, at.y + 0.55F * size.y}, 0.35F * size.y, text_ink(false));
-    text_at(fonts().body, at, text_ink(false), text);
-  }
-
   // Draws the instructions for a scene without models and material, or the request of the device to its user, in large
   // text in the middle.
   void draw_request() const {
@@ -351,6 +341,8 @@ struct Overlay {
     if (!warning.empty()) notes.emplace_back(warning, ink(colours().fault));
     if (const std::string hint = exhibit ? "" : press_hint(shown, view); !hint.empty() && notes.empty())
       notes.emplace_back(hint, ink(colours().quiet));
+    if (const std::string recording = recording_words(shown.recording); !recording.empty())
+      notes.insert(notes.begin(), {recording, ink(colours().text)});
     const float pad = 0.5F * line();
     const float wrap = corner ? area.at.x + area.size.x - left_px - 3.0F * pad : 0.86F * area.size.x;
     float y = corner ? bottom_px : top_px;
@@ -377,9 +369,8 @@ struct Overlay {
       left_px = draw_big_number(bars);
       draw_title();
       top_px = draw_headline();
-      if (view.scales_force) top_px = draw_feel(top_px);
+      if (view.scales_force) draw_feel(std::exchange(top_px, top_px + feel_height(style)));
     }
-    draw_recording();
     if (shown.replay != nullptr) draw_replay_bar(buttons);
     if (!exhibit) draw_buttons();
     if (!view.dialogs.recording_roles.any()) draw_request();
@@ -401,8 +392,10 @@ SceneArea stage_of(const WindowView& shown, const ViewState& view, const UiStyle
   if (view.exhibit.on) return area;
   // At least room for a title, a headline of two lines, and its detail, so that the blocks seldom move.
   const float usual = 3.4F * height_of(style.fonts().body) + 2.0F * height_of(style.fonts().heading);
+  const float sliders = view.scales_force ? feel_height(style) : 0.0F;
   const float notes = has_corner(style, area) ? 0.0F : 3.2F * height_of(style.fonts().body);
-  const float above = std::max(usual, headline_of(shown.models.verdict, style, area).below_px - area.at.y) + notes;
+  const float above =
+      std::max(usual, headline_of(shown.models.verdict, style, area).below_px - area.at.y) + sliders + notes;
   const float below = big_number_height(style, buttons_height(style) + replay_height(shown, style));
   return {{area.at.x, area.at.y + above}, {area.size.x, std::max(1.0F, area.size.y - above - below)}};
 }
