@@ -191,7 +191,12 @@ struct Rows {
       tip(slot.problem.c_str());
     } else {
       const std::string words = slot.state == SlotState::waiting ? "waits" : fixed(100.0 * slot.progress, 0) + " %";
-      ImGui::ProgressBar(static_cast<float>(slot.progress), {7.0F * line, line}, words.c_str());
+      // The words are beside the bar, which would cut them and hide them.
+      ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {ImGui::GetStyle().FramePadding.x, 0.0F});
+      ImGui::ProgressBar(static_cast<float>(slot.progress), {4.0F * line, line}, "");
+      ImGui::PopStyleVar();
+      ImGui::SameLine();
+      ImGui::TextUnformatted(words.c_str());
     }
     ImGui::SameLine();
     draw_cross(index);

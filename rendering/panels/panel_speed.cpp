@@ -191,9 +191,10 @@ void draw_against_force(const ModelsView& models, const UiStyle& style, const Im
 
 void draw_speed(const ModelsView& models, const UiStyle& style, const ImVec2& size) {
   const PlotAxes axes = speed_axes(models);
-  const float budget = ImGui::GetTextLineHeightWithSpacing();
+  // The bar has a frame around the text, because it cuts the text at its frame.
+  const float bar = ImGui::GetTextLineHeight() + 2.0F * ImGui::GetStyle().FrameBorderSize;
   {
-    const LivePlot plot(style, {size.x, size.y - budget}, axes);
+    const LivePlot plot(style, {size.x, size.y - bar - ImGui::GetStyle().ItemSpacing.y}, axes);
     plot.jnd_band(axes.y.from, 0.0);
     SpeedPlot drawing{models, style, plot};
     plot.level(0.0, ink(style.colours().text), 1.5F * style.scale());
@@ -212,7 +213,7 @@ void draw_speed(const ModelsView& models, const UiStyle& style, const ImVec2& si
       "Both values are columns of the table.");
   const std::size_t named = models.verdict.chosen.value_or(models.selected);
   if (named < models.slots.size() && has_dot(models, named))
-    draw_budget(models.slots[named], slot_colour(models, named, style.theme()), {size.x, ImGui::GetTextLineHeight()});
+    draw_budget(models.slots[named], slot_colour(models, named, style.theme()), {size.x, bar});
 }
 
 }  // namespace palpate

@@ -160,8 +160,9 @@ struct Overlay {
     return std::to_string(slot == kReferenceBlock ? models().listed().size() + 1 : models().number_of(slot)) + "  ";
   }
 
-  // Draws the name, the 99 % error of the test and the time of each model below its block.
-  void draw_labels() const {
+  // Draws name, 99 % error and time of each model below its block. Returns the y of the lowest edge.
+  float draw_labels() const {
+    float lowest_px = area.at.y;
     const std::vector<std::size_t>& slots = shown.blocks;
     const glm::vec2 picture(area.size.x, area.size.y);
     const float pad = 0.22F * line();
@@ -191,11 +192,13 @@ struct Overlay {
         list().AddRect({at.x - 2.5F * pad, at.y - pad}, {at.x + size.x + 2.5F * pad, at.y + size.y + pad}, ink(colour),
                        6.0F, 0, 2.0F);
       }
+      lowest_px = std::max(lowest_px, at.y + size.y + pad);
       text_at(font, at, text_ink(false), name);
       const bool above_jnd = !reference && model->is_judged() && model->errors.p99_error_over_jnd > 1.0;
       const ImU32 shade = above_jnd ? ink(text_colour(kAboveJndColour, style.theme())) : text_ink(true);
       text_at(fonts().body, {at.x, at.y + above.y}, shade, figures);
     }
+    return lowest_px;
   }
 
   ImU32 error_ink(double over_jnd, bool quiet) const {
@@ -330,10 +333,10 @@ struct Overlay {
     ImGui::End();
   }
 
-  // Draws what has to be said now on plates in the corner at the right of `left_px` and above `bottom_px`, which no
-  // block covers; where that is too narrow, below `top_px`.
-  void draw_notes(float left_px, float bottom_px, float top_px) const {
-    const bool exhibit = view.exhibit.on, corner = has_corner(style, area);
+  // Draws what has to be said now on plates in the corner at the right of `left_px`, from `bottom_px` up to
+  // `labels_px`, which no block covers; what has no room there, below `top_px`.
+  void draw_notes(float left_px, float bottom_px, float labels_px, float top_px) const {
+    const bool exhibit = view.exhibit.on;
     std::vector<std::pair<std::string, ImU32>> notes;
     for (const Toast& toast : view.toasts)
       notes.emplace_back(toast.text, ink(toast.problem ? colours().fault : colours().text));
@@ -344,10 +347,14 @@ struct Overlay {
     if (const std::string recording = recording_words(shown.recording); !recording.empty())
       notes.insert(notes.begin(), {recording, ink(colours().text)});
     const float pad = 0.5F * line();
-    const float wrap = corner ? area.at.x + area.size.x - left_px - 3.0F * pad : 0.86F * area.size.x;
-    float y = corner ? bottom_px : top_px;
+    bool corner = true;
+    float wrap = area.at.x + area.size.x - left_px - 3.0F * pad, y = bottom_px;
     for (const auto& [text, stripe] : notes) {
-      const ImVec2 size = text_size(fonts().body, text, wrap);
+      ImVec2 size = text_size(fonts().body, text, wrap);
+      if (corner && (!has_corner(style, area) || y - size.y - 2.0F * pad < labels_px)) {
+        corner = false, y = top_px, wrap = 0.86F * area.size.x;
+        size = text_size(fonts().body, text, wrap);
+      }
       if (corner) y -= size.y + 2.0F * pad;
       const float x =
           corner ? area.at.x + area.size.x - size.x - 2.0F * pad : area.at.x + 0.5F * (area.size.x - size.x);
@@ -363,9 +370,9 @@ struct Overlay {
     const bool exhibit = view.exhibit.on;  // has its own texts
     const float buttons = exhibit ? 0.0F : buttons_height(style);
     const float bars = buttons + replay_height(shown, style);
-    float top_px = area.at.y + 2.0F * line(), left_px = area.at.x;
+    float top_px = area.at.y + 2.0F * line(), left_px = area.at.x, labels_px = area.at.y;
     if (!exhibit) {
-      draw_labels();
+      labels_px = draw_labels();
       left_px = draw_big_number(bars);
       draw_title();
       top_px = draw_headline();
@@ -374,7 +381,7 @@ struct Overlay {
     if (shown.replay != nullptr) draw_replay_bar(buttons);
     if (!exhibit) draw_buttons();
     if (!view.dialogs.recording_roles.any()) draw_request();
-    draw_notes(left_px, area.at.y + area.size.y - bars, top_px);
+    draw_notes(left_px, area.at.y + area.size.y - bars, labels_px, top_px);
   }
 };
 
