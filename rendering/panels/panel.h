@@ -74,14 +74,12 @@ class ForceCurves {
 
 // The table of models. A click on a row makes its model the active one, with Shift it compares it with the active one
 // alone; a click on its error shows the moment of its largest one. A right click on a model of another material offers
-// to compare it. The last row adds a model.
+// to compare it. The last row adds a model. Where it is narrow, columns are dropped in this order: error in mN,
+// centres, force, share within the JND. Name, 99 % error and time always stay.
 void draw_model_table(const WindowView& shown, ViewState& view, const UiStyle& style, float height,
                       const WindowActions& actions);
 // Which other models have the forces of this one, and why; empty: none. Begins with a line break.
 std::string equal_words(const ModelInfo& info);
-// The columns of that table that fit into `room`; `width` gives the width of a column. They are dropped in this order:
-// error in mN, centres, force, share within the JND. Name, 99 % error and time always stay.
-std::vector<int> shown_columns(float room, float (*width)(int column));
 
 // The plot of error against time: one dot for each model, with the columns "99 % error / JND" and "ns" of the table.
 void draw_speed(const ModelsView& models, const UiStyle& style, const ImVec2& size);

@@ -38,7 +38,7 @@ struct Column {
   double (*value)(const ModelsView& models, Slot slot);  // NaN: none; null: the name
   std::string (*text)(double value);
 };
-constexpr int kName = 0, kErrorNow = 2, kP99 = 3, kColumns = 7;
+constexpr int kName = 0, kErrorNow = 2, kP99 = 3, kColumns = 7, kDroppable = 4;
 constexpr Column kTable[kColumns] = {
     {"model", "Click, or press its number: the active model. Shift and click: the two beside each other.",
      "      trend+greedy-100", 0, nullptr, nullptr},
@@ -94,6 +94,8 @@ void right_aligned(const std::string& text, const Rgb& colour) {
   ImGui::TextColored(paint(colour), "%s", text.c_str());
 }
 
+float cross_width() { return ImGui::CalcTextSize("×").x + 2.0F * ImGui::GetStyle().FramePadding.x; }
+
 // Draws a heading, right-aligned except for the name. Clicks sort in one order, the other, and by slot.
 void draw_heading(int column, TableState& sort) {
   const ImVec2 at = ImGui::GetCursorScreenPos();
@@ -148,11 +150,12 @@ struct Rows {
     const ImU32 colour =
         ink(slot_colour(models(), index, style.theme()), slot.state == SlotState::ready ? 1.0F : 0.35F);
     const bool usable = slot.state == SlotState::ready, selected = index == models().selected;
-    const bool crossed = view.crossed == index || selected;
-    // A name that is too long is cut at its number of centres; the last column and the tip have it.
     std::string name = slot.name;
-    if (ImGui::CalcTextSize(("      " + name + "  ×").c_str()).x > all)
-      name.erase(std::min(name.find('-'), name.size()));
+    const float wide = ImGui::CalcTextSize(("      " + name).c_str()).x;
+    const bool pointed = view.crossed == index, fits = wide + cross_width() <= all;
+    const bool crossed = pointed || (selected && fits);
+    // A name that is too long is cut at its number of centres; the last column and the tip have it.
+    if (wide > all || (pointed && !fits)) name.erase(std::min(name.find('-'), name.size()));
     if (!slot.equals.empty()) name += "  (why?)";
     const std::string label = "      " + name + "###slot" + std::to_string(index);
     const auto flags = ImGuiSelectableFlags_SpanAllColumns | ImGuiSelectableFlags_AllowItemOverlap |
@@ -170,7 +173,7 @@ struct Rows {
     if (selected) list.AddCircle(middle, 0.52F * line, ink(style.colours().text), 0, 1.5F);
     draw_mark(list, middle, (selected ? 0.40F : 0.27F) * line, slot.paper, colour, style);
     if (!crossed || !usable) return;
-    ImGui::SameLine(all - ImGui::CalcTextSize("×").x - 2.0F * ImGui::GetStyle().FramePadding.x);
+    ImGui::SameLine(all - cross_width());
     draw_cross(index);
   }
 
@@ -182,7 +185,8 @@ struct Rows {
 
   void draw_waiting(Slot index) const {
     const ModelView& slot = models().slots[index];
-    ImGui::TableNextColumn();
+    // The first column that is shown.
+    for (int column = kName + 1; column <= kP99 && !ImGui::TableSetColumnIndex(column);) ++column;
     const ImVec2 at = ImGui::GetCursorScreenPos();
     const float line = ImGui::GetTextLineHeight();
     ImGui::PushClipRect(at, {at.x + 14.0F * line, at.y + 2.0F * line}, false);
@@ -244,9 +248,17 @@ struct Rows {
   }
 };
 
-float column_width(int column) {
-  return std::max(ImGui::CalcTextSize(kTable[column].heading).x, ImGui::CalcTextSize(kTable[column].widest).x) +
-         2.0F * ImGui::GetStyle().CellPadding.x;
+float column_width(const Column& column) {
+  return std::max(ImGui::CalcTextSize(column.heading).x, ImGui::CalcTextSize(column.widest).x) +
+         (column.value == nullptr ? cross_width() : 0.0F) + 2.0F * ImGui::GetStyle().CellPadding.x;
+}
+
+// How many columns have no room in a table that is `room` wide.
+int columns_to_drop(float room) {
+  int drops = 0;
+  for (const Column& column : kTable) room -= column_width(column);
+  while (room < 0.0F && drops < kDroppable) room += column_width(*std::ranges::find(kTable, ++drops, &Column::dropped));
+  return drops;
 }
 
 }  // namespace
@@ -257,40 +269,21 @@ std::string equal_words(const ModelInfo& info) {
          (info.method == "trend" ? ". Cross-validation takes no correction here, so that the trend is left." : ".");
 }
 
-std::vector<int> shown_columns(float room, float (*width)(int)) {
-  std::vector<int> columns;
-  float needed = 0.0F;
-  for (int column = 0; column < kColumns; ++column) {
-    columns.push_back(column);
-    needed += width(column);
-  }
-  for (int drop = 1; needed > room && drop <= kColumns; ++drop) {
-    const auto gone =
-        std::find_if(columns.begin(), columns.end(), [&](int column) { return kTable[column].dropped == drop; });
-    if (gone == columns.end()) continue;
-    needed -= width(*gone);
-    columns.erase(gone);
-  }
-  return columns;
-}
-
 void draw_model_table(const WindowView& window, ViewState& view, const UiStyle& style, float height,
                       const WindowActions& actions) {
   view.crossed = view.pointed;
   view.pointed = kReferenceBlock;
   const auto flags = ImGuiTableFlags_Hideable | ImGuiTableFlags_ScrollY | ImGuiTableFlags_BordersInnerH |
                      ImGuiTableFlags_NoSavedSettings;
-  const std::vector<int> shown =
-      shown_columns(ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ScrollbarSize, column_width);
+  const int drops = columns_to_drop(ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ScrollbarSize);
   if (!ImGui::BeginTable("models", kColumns, flags, {0.0F, height})) return;
   ImGui::TableSetupScrollFreeze(0, 1);
   for (int column = 0; column < kColumns; ++column) {
-    const bool hidden = std::find(shown.begin(), shown.end(), column) == shown.end();
-    ImGui::TableSetupColumn(kTable[column].heading, ImGuiTableColumnFlags_WidthStretch, column_width(column));
-    ImGui::TableSetColumnEnabled(column, !hidden);
+    ImGui::TableSetupColumn(kTable[column].heading, ImGuiTableColumnFlags_WidthStretch, column_width(kTable[column]));
+    ImGui::TableSetColumnEnabled(column, kTable[column].dropped == 0 || kTable[column].dropped > drops);
   }
   ImGui::TableNextRow(ImGuiTableRowFlags_Headers);
-  for (const int column : shown)
+  for (int column = 0; column < kColumns; ++column)
     if (ImGui::TableSetColumnIndex(column)) draw_heading(column, view.table);
   const Rows rows{window, view, style, actions};
   for (const std::size_t index : sorted_slots(window.models, view.table)) {
