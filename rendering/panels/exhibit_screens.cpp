@@ -32,7 +32,9 @@ struct Exhibit::Screens {
   float bottom() const { return layout.panel.at.y + layout.panel.size.y - 2.6F * body(); }
   float body() const { return height_of(style.fonts().body); }
   double now_s() const { return shown.health.newest.loop_time_s; }
-  void space(float lines) const { ImGui::Dummy({1.0F, lines * body()}); }
+  // Whether the panel has no room for headings, as at 800x600.
+  bool low() const { return layout.panel.size.y < 20.0F * height_of(style.fonts().heading); }
+  void space(float lines) const { ImGui::Dummy({1.0F, lines * (low() ? 0.5F : 1.0F) * body()}); }
   static std::string centres_of(const ExhibitModel& model) { return std::to_string(model.centres); }
   // The ending of the keys of the texts about a model. A trend without a correction has no centres.
   static std::string kind_of(const ExhibitModel& model) {
@@ -53,8 +55,7 @@ struct Exhibit::Screens {
   }
   // As large as there is room for.
   void say_long(const std::string& text) {
-    const bool low = layout.panel.size.y < 20.0F * height_of(style.fonts().heading);
-    say_in(low ? style.fonts().body : style.fonts().heading, style.colours().text, text);
+    say_in(low() ? style.fonts().body : style.fonts().heading, style.colours().text, text);
   }
   void say_in(ImFont* font, const Rgb& colour, const std::string& text) {
     ImGui::PushStyleColor(ImGuiCol_Text, paint(colour));
@@ -138,7 +139,7 @@ struct Exhibit::Screens {
   }
 
   void draw_attract() {
-    say(words()("attract"));
+    say_long(words()("attract"));
     space(0.3F);
     say_quietly(words()("attract_more"));
     space(0.6F);
@@ -166,7 +167,7 @@ struct Exhibit::Screens {
       const int chosen = pair_of_buttons("left", "←", "right", "→", game.chosen_left() ? 1 : 2);
       if (chosen != 0) game.choose(chosen == 1);
     }
-    say(words()(game.can_answer() ? game.has_force() ? "question_felt" : "question" : "press"));
+    say_long(words()(game.can_answer() ? game.has_force() ? "question_felt" : "question" : "press"));
     if (!game.can_answer()) {
       say_quietly(words()(game.has_force() ? "feel_how" : "press_how"));
     } else if (const int said = pair_of_buttons("left", "1", "right", "2"); said != 0) {
@@ -245,7 +246,7 @@ struct Exhibit::Screens {
     const bool hidden = game.largest_over_jnd(levels - 1) <= 1.0;
     // The time of the tick of the best model alone, as everywhere.
     const ModelView& best = shown.models.slots[game.line_up().levels[levels - 1].slot];
-    say(words()(hidden ? "take_home" : "take_home_noticed", time_words(best.tick_ns())));
+    say_long(words()(hidden ? "take_home" : "take_home_noticed", time_words(best.tick_ns())));
     space(0.4F);
     say_quietly(words()("day"));
     for (std::size_t i = 0; i < levels; ++i) {

@@ -92,7 +92,9 @@ std::vector<double> LivePlot::ticks(const Range& range, int most) const {
     std::erase_if(values, [&](double value) { return value < range.from || value > range.to; });
     return values;
   }
-  const double step = tick_step(range.to - range.from, most), first = std::ceil(range.from / step - 1e-9);
+  double step = tick_step(range.to - range.from, most);
+  if (range.from == -range.to) step = std::min(step, range.to);  // 0 alone would be no scale
+  const double first = std::ceil(range.from / step - 1e-9);
   for (double i = first; i * step <= range.to + 1e-9 * step; i += 1.0) values.push_back(i * step + 0.0);  // no -0
   return values;
 }
