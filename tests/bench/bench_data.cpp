@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <fstream>
-#include <string>
 
 #include "tests/support/fitting.h"
 #include "tests/support/random_points.h"

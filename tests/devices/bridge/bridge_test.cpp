@@ -3,14 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdint>
 #include <deque>
-#include <memory>
-#include <string>
-#include <utility>
-#include <vector>
 
-#include "devices/firmware/bridge_protocol.h"
 #include "engine/base/random_stream.h"
 #include "tests/support/simulated_device.h"
 

@@ -4,7 +4,6 @@
 
 #include <cerrno>
 #include <cmath>
-#include <vector>
 
 #include "devices/firmware/wire.h"
 #include "devices/hid/hidapi_bus.h"

@@ -5,21 +5,14 @@
 
 #include <poll.h>
 #include <unistd.h>
-#include <algorithm>
 #include <cmath>
 #include <csignal>
-#include <cstdint>
 #include <cstdio>
 #include <optional>
-#include <string>
-#include <thread>
-#include <utility>
-#include <vector>
 
 #include "devices/bridge/bridge_bus.h"
 #include "devices/firmware/bridge_protocol.h"
 #include "devices/hid/hidapi_bus.h"
-#include "devices/link/device_protocol.h"
 #include "engine/base/random_stream.h"
 #include "engine/base/signals.h"
 #include "tests/support/message_parts.h"

@@ -2,13 +2,9 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <bit>
-#include <cmath>
 #include <cstring>
-#include <limits>
 #include <utility>
-#include <vector>
 
 #include "engine/base/random_stream.h"
 #include "engine/live/force_guard.h"

@@ -3,11 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <cerrno>
-#include <thread>
 #include <utility>
 
-#include "engine/live/handover.h"
-#include "engine/live/pacer.h"
 #include "tests/support/live_doubles.h"
 #include "tests/support/message_parts.h"
 #include "tests/support/temporary_folder.h"

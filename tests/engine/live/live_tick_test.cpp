@@ -4,12 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "devices/registry/device_registry.h"
 #include "devices/virtual/simulated_devices.h"
-#include "engine/tick/haptics_tick.h"
 #include "tests/support/example_model.h"
 #include "tests/support/live_doubles.h"
 #include "tests/support/rt_guard.h"

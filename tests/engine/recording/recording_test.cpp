@@ -6,7 +6,6 @@
 #include <clocale>
 #include <cstring>
 #include <filesystem>
-#include <limits>
 #include <random>
 
 #include "engine/base/text.h"

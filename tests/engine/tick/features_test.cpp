@@ -4,11 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
-#include <string>
 #include <utility>
-#include <vector>
 
 #include "engine/tick/haptics_tick.h"
 #include "models/model/fitted_model.h"

@@ -2,10 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 #include "engine/tick/jnd.h"
-#include "engine/tick/motion_estimator.h"
 #include "tests/support/example_model.h"
 
 namespace palpate {

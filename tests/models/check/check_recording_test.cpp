@@ -12,7 +12,6 @@
 #include "engine/base/random_stream.h"
 #include "engine/base/text.h"
 #include "engine/tick/motion_estimator.h"
-#include "models/samples/samples.h"
 #include "scenes/material/material.h"
 #include "scenes/material/rig.h"
 #include "tests/support/fitting.h"

@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 #include <Eigen/LU>
-#include <Eigen/QR>
 #include <Eigen/SVD>
 #include <nlohmann/json.hpp>
 
@@ -10,7 +9,6 @@
 #include <filesystem>
 #include <fstream>
 
-#include "models/model/correction.h"
 #include "models/model/kernels.h"
 #include "tests/support/message_parts.h"
 #include "tests/support/plain_rbf.h"

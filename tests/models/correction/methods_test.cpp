@@ -9,10 +9,8 @@
 #include <limits>
 #include <numeric>
 #include <utility>
-#include <vector>
 
 #include "models/correction/algebra.h"
-#include "models/model/correction.h"
 #include "tests/support/fit_centres.h"
 #include "tests/support/message_parts.h"
 #include "tests/support/plain_rbf.h"

@@ -8,7 +8,6 @@
 #include <numbers>
 
 #include "engine/tick/haptics_tick.h"
-#include "models/correction/methods.h"
 #include "models/model/correction.h"
 #include "models/model/file/model_io.h"
 #include "scenes/evaluation/model_errors.h"

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include "engine/base/text.h"
-#include "models/correction/methods.h"
 #include "tests/support/message_parts.h"
 
 namespace palpate {

@@ -2,9 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-#include <limits>
-
 #include "tests/support/example_model.h"
 #include "tests/support/message_parts.h"
 #include "tests/support/random_points.h"

@@ -3,14 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <string>
 
-#include "engine/tick/features.h"
 #include "models/model/fitted_model.h"
-#include "models/model/vector_loops.h"
 #include "tests/support/plain_rbf.h"
 #include "tests/support/random_points.h"
 

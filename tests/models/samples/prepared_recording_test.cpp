@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 #include "engine/base/random_stream.h"
 #include "scenes/material/material.h"
 #include "scenes/material/rig.h"

@@ -3,11 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cmath>
 #include <functional>
 #include <set>
 
-#include "models/samples/selection.h"
 #include "tests/support/example_model.h"
 #include "tests/support/feature_specs.h"
 #include "tests/support/message_parts.h"

@@ -1,6 +1,5 @@
 #include "tests/support/message_parts.h"
 
-#include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
 #include <filesystem>

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include "engine/base/text.h"
-#include "engine/recording/recording.h"
 #include "tests/support/example_model.h"
 #include "tests/support/message_parts.h"
 #include "tests/support/temporary_folder.h"

@@ -2,10 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-
-#include "scenes/evaluation/model_errors.h"
-
 namespace palpate {
 namespace {
 

@@ -3,9 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstring>
-#include <memory>
 #include <vector>
 
 #include "engine/base/random_stream.h"

@@ -2,11 +2,9 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <array>
 #include <functional>
 #include <set>
-#include <string>
 #include <utility>
 
 #include "engine/base/random_stream.h"

@@ -4,7 +4,6 @@
 
 #include <chrono>
 #include <filesystem>
-#include <limits>
 #include <regex>
 
 #include "tests/support/message_parts.h"

@@ -7,7 +7,6 @@
 #include <filesystem>
 #include <vector>
 
-#include "scenes/study/study_file.h"
 #include "tests/support/full_disk.h"
 #include "tests/support/message_parts.h"
 #include "tests/support/rt_guard.h"

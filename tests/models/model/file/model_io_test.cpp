@@ -7,7 +7,6 @@
 #include <cmath>
 #include <limits>
 #include <sstream>
-#include <string>
 #include <vector>
 
 #include "tests/support/example_model.h"
