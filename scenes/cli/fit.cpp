@@ -69,7 +69,7 @@ std::string training_contradiction(const std::vector<CheckedFile>& files,
   const double printed = model->data().provenance.training_within_jnd;
   if (!(std::abs(errors.within_jnd() - printed) > kLeastShare)) return {};
   return "in training, " + fixed(100.0 * errors.within_jnd(), 2) + " % within one JND as recorded, " +
-         fixed(100.0 * printed, 2) + " % after correction";
+         fixed(100.0 * printed, 2) + " % beyond the surface, with the zeros corrected";
 }
 
 void print_line(const char* label, const std::string& text) {
