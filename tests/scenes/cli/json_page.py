@@ -34,7 +34,7 @@ ALSO = {"check": "`palpate record --json` prints the same object, for its record
 MEANING = {
     "accelerometer": "whether accelerations were measured",
     "advice": "what to do; may be empty",
-    "beyond_units": "strokes with an error above one JND",
+    "beyond_units": "units with an error above one JND",
     "began": "the memory of the material at the first row: at rest, or as the end of another recording",
     "beginning_moved": "figures with its beginning, under a preload, where a training recording with the same one begins: "
                        "no prediction; null where there is none",
@@ -79,7 +79,7 @@ MEANING = {
     "surface_moved": "figures with the surface aligned to the forces of this recording: no prediction",
     "surface_offset_m": "to be subtracted from position_m, so that 0 is the surface",
     "training_within_jnd": "share of the training within one JND",
-    "units": "strokes, which are resampled for the intervals",
+    "units": "recordings where there are several, else strokes; resampled for the intervals",
     "unusable": "trials whose forces were not rendered",
     "verdict": "usable, care or unusable; of a study, the result in words",
     "weight_above_0": "whether the regression uses the term",
