@@ -332,7 +332,8 @@ std::shared_ptr<const ForceHistory> LiveSession::worst_of_test(std::size_t slot,
     worst_s = point.time_s;
   });
   const auto is_near = [&](double time_s) { return time_s >= worst_s - kBefore_s && time_s <= worst_s + kAfter_s; };
-  auto history = std::make_shared<ForceHistory>(recording.rows.size());
+  auto history = std::make_shared<ForceHistory>(
+      static_cast<std::size_t>(std::ranges::count_if(recording.rows, is_near, &RecordingRow::time_s)));
   each_tick([&](const HistoryPoint& point) {
     if (is_near(point.time_s)) history->append(point);
   });
