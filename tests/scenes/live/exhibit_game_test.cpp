@@ -14,7 +14,7 @@ const std::vector<ExhibitModel> kAll = {{0, 100, false}, {1, 40, true}, {2, 5, t
 HistoryPoint tick_at(double time_s, double over_jnd, bool in_contact = true, bool away = false) {
   HistoryPoint tick{.loop_time_s = time_s, .reference_N = 2.0F, .in_contact = in_contact, .out_of_domain = away};
   tick.force_N.fill(2.0F);
-  for (std::size_t slot : {0, 1, 2})
+  for (std::size_t slot : {0U, 1U, 2U})
     tick.sustained_over_jnd[slot] = static_cast<float>(over_jnd) * (slot == 2 ? 1.0F : slot == 1 ? 0.5F : 0.125F);
   return tick;
 }
