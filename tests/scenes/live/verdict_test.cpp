@@ -38,8 +38,7 @@ TEST(Verdict, WhereNoneIsGoodEnoughBothErrorsAreNamed) {
   const Verdict verdict = judge({model(0, "greedy", true, 3.1, 390.0), model(1, "trend", false, 1.4, 395.0)}, "");
   EXPECT_EQ(verdict.headline,
             "No model is good enough; the rule takes trend: 84.0 % of the test is within one JND, a tick takes 0.4 us. "
-            "greedy: "
-            "67.0 %, as fast.");
+            "greedy: 67.0 %, as fast.");
 }
 
 TEST(Verdict, WithoutATrueForceTheReferenceIsNamed) {
