@@ -102,7 +102,10 @@ struct Impedance {
 // means, because the extremes of a link with jitter differ from second to second, and the force would with them.
 class LoopDelay {
  public:
-  // `weight`: how long it acted, in one unit for all. `time_s` does not decrease. O(1).
+  static constexpr std::size_t kParts = 17;
+  static constexpr double kPart_s = 1.0 / static_cast<double>(kParts - 1);
+
+  // `weight`: how long it acted, relative to the others. `time_s` does not decrease. O(1).
   void add(const ForceAge& age, double weight, double time_s) noexcept {
     move_to(time_s);
     Ages& part = parts_[part_ % kParts];
@@ -128,7 +131,6 @@ class LoopDelay {
     double sum_s = 0.0, weights = 0.0;
     double mean_s() const noexcept { return weights > 0.0 ? sum_s / weights : 0.0; }
   };
-  static constexpr std::size_t kParts = 17;
 
   std::array<Ages, kParts> parts_{};
   std::size_t part_ = 0;
@@ -251,7 +253,8 @@ class ForceGuard {
 
   // For every sample, before `scaled` of the same tick.
   void acted(const ForceAge& age, double tick_s = kHapticTick_s) noexcept {
-    const double since_s = time_s_ - std::exchange(sampled_s_, time_s_);
+    // A longer pause is no delay of the loop.
+    const double since_s = std::min(time_s_ - std::exchange(sampled_s_, time_s_), LoopDelay::kPart_s);
     // A force that is written in a tick acts from the next tick on at the latest, until the next sample is used.
     const bool known = age.largest_s >= 0.0;
     // A force with an unknown delay can make a hand oscillate.

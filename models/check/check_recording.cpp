@@ -226,8 +226,10 @@ class Checker {
     }
     const bool loud = noise_known_ && noise_N_ > 0.5 * request_.jnd.offset_N;
     add(noise_known_ ? "force_noise" : "force_noise_unknown", loud ? Severity::warning : Severity::note, noise_N_,
-        noise_known_ ? words("the force noise is %.3g mN RMS", 1e3 * noise_N_)
-                     : "the force noise could not be determined: between rows the force changes by more than its noise",
+        noise_known_
+            ? words("the force noise is %.3g mN RMS", 1e3 * noise_N_)
+            : "the force noise could not be determined: from row to row the force does not change as white noise does, "
+              "but by motion or a filter",
         loud ? "the noise hides small forces: shield or filter the sensor, and compare errors with the noise floor"
              : "");
   }

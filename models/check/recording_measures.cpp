@@ -167,7 +167,8 @@ double white_force_noise_N(const PreparedRecording& prepared) {
 }
 
 bool is_force_noise_known(const PreparedRecording& prepared) {
-  constexpr std::size_t kWindowRows = 50;
+  constexpr std::size_t kWindowRows = 50;  // and a fifth of the windows, as identify_force_noise_N
+  constexpr double kLargestCorrelation = -0.45;
   const std::vector<Sample>& rows = prepared.rows;
   std::vector<std::pair<double, double>> windows;  // sums of squares and of products of neighbours, N^2
   for (std::size_t end = kWindowRows; end <= std::min(rows.size(), kSensorIdentificationRows); end += kWindowRows) {
@@ -182,7 +183,7 @@ bool is_force_noise_known(const PreparedRecording& prepared) {
   std::ranges::sort(windows);
   windows.resize((windows.size() + 4) / 5);
   double excess_N2 = 0.0;  // of the products over those of the largest correlation
-  for (const auto& [squares_N2, products_N2] : windows) excess_N2 += products_N2 + 0.45 * squares_N2;
+  for (const auto& [squares_N2, products_N2] : windows) excess_N2 += products_N2 - kLargestCorrelation * squares_N2;
   return !windows.empty() && excess_N2 <= 0.0;
 }
 

@@ -156,12 +156,13 @@ Status run_folder(const FolderRun& run) {
   if (!complete) return complete.error();
   if (const Status written = write_table(run, *jobs, left, problems); !written) return written;
   std::string words;
-  std::size_t failed = 0, refused = 0;
+  std::size_t failed = 0;
+  bool corrects = false;
   for (std::size_t i = 0; i < left.size(); ++i) {
     if (is_done(left[i])) continue;
     ++failed;
     std::string problem = problems[i].data();
-    if (!problem.empty()) ++refused;
+    corrects = corrects || !problem.empty();
     if (problem.empty()) problem = *complete ? "its process ended" : "interrupted";
     const std::string& name = left[i].recording.string();
     words += "\n  " + (problem.starts_with(name) ? problem : name + ": " + problem);
@@ -169,11 +170,10 @@ Status run_folder(const FolderRun& run) {
   std::printf("%zu of %zu recordings are done, %zu of them before; table %s/%s.csv\n", jobs->size() - failed,
               jobs->size(), jobs->size() - left.size(), run.out.c_str(), run.table.c_str());
   if (failed == 0) return {};
-  return Error{std::to_string(failed) + " of " + std::to_string(jobs->size()) + " recordings are not done; " +
-               (refused == failed ? "none of them can be used as it is:"
-                : refused > 0     ? "the same command continues, but not with those that cannot be used as they are:"
-                                  : "the same command continues:") +
-               words};
+  return Error{
+      std::to_string(failed) + " of " + std::to_string(jobs->size()) + " recordings are not done; " +
+      (corrects ? "correct what is said of them, then the same command continues:" : "the same command continues:") +
+      words};
 }
 
 }  // namespace palpate::cli

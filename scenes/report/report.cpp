@@ -138,7 +138,9 @@ std::vector<std::string> details(const ReportData& data, const ReportRequest& re
     lines.push_back("The test has " + std::to_string(strokes) + (strokes == 1 ? " stroke" : " strokes") +
                     ", too few for an interval: the figures decide as they are.");
   if (const ModelResult& best = data.models[choice.best]; choice.best != choice.recommended) {
-    const bool close = std::abs(best.errors.within_jnd - use.errors.within_jnd) < kLeastShare;
+    const bool close = best.errors.within_jnd - use.errors.within_jnd < kLeastShare &&
+                       (use.errors.within_jnd < kManyWithin ||
+                        use.errors.p99_error_over_jnd - best.errors.p99_error_over_jnd < kLeastDifference_jnd);
     lines.push_back(
         (close ? "As good"
                : "With better figures, which " + std::to_string(strokes) + " strokes do not tell from these") +
@@ -245,8 +247,8 @@ std::string notes_html(const ReportData& data, const ReportRequest& request) {
                     " N, where it is extrapolated.");
   notes.push_back(
       !data.floor.known
-          ? "The errors of a perfect model could not be determined: between the rows of a test recording the force "
-            "changes by more than its noise."
+          ? "The errors of a perfect model could not be determined: from row to row the force of a test recording does "
+            "not change as white noise does, but by motion or a filter."
           : "A perfect model would have " + percent(data.floor.within_jnd) +
                 " within the JND and 99 % of its errors below " + three_digits(data.floor.p99_error_over_jnd) +
                 " JND, because of the noise of the force sensor (" + three_digits(1e3 * data.floor.force_noise_N) +

@@ -181,8 +181,8 @@ PALPATE_API void palpate_limiter_free(palpate_limiter*);
  * force passes the stages of the program's own loop: the stiffness that a hand can hold stably with the lag of the
  * loop, the passivity controller, the limiter. `step_s`: since the last call, measured; where time_s shows longer
  * steps, those count. A sample that is not later than the last one, or not within the reach of a hand (20 mm, 10 m/s),
- * holds the force, until the last one is stale_after_s old. One that is not finite, and fewer than 97 calls or samples
- * a second (100, less the error of a clock), stop it: PALPATE_LIMIT_STOPPED. One limiter belongs to one stream.
+ * holds the force, until the last one is stale_after_s old. One that is not finite, and 96 calls or samples a second
+ * or fewer (100, less the error of a clock), stop it: PALPATE_LIMIT_STOPPED. One limiter belongs to one stream.
  * Wait-free. */
 PALPATE_API double palpate_limiter_render(palpate_limiter*, palpate_stream*, double time_s, double position_m,
                                           double step_s);

@@ -188,23 +188,28 @@ TEST(LiveTick, ANewSetGoesOnWithTheFiltersOfTheOld) {
 }
 
 TEST(LiveTick, ABadSampleLetsGoAndRampsBack) {
-  static bool broken = false;
-  broken = false;
-  PathDevice device([](double) { return broken ? std::numeric_limits<double>::quiet_NaN() : 5e-3; }, {10.0, 1e9, 0.1});
+  static double away_m = 0.0;
+  away_m = 0.0;
+  PathDevice device([](double) { return 5e-3 + away_m; }, {10.0, 1e9, 0.1});
   LiveRig rig(device);
   rig.publish(1, {spring(300.0)});
   EXPECT_NEAR(rig.run(1000).rendered_N, 1.5, 1e-9);
   EXPECT_EQ(rig.run().faults_latched, 0u);
-  broken = true;
+  away_m = std::numeric_limits<double>::quiet_NaN();
   EXPECT_EQ(rig.run().faults, loop_fault::kBadSample);
   EXPECT_EQ(device.force_N(), 0.0);
-  broken = false;
+  away_m = 0.0;
   const LoopSnapshot snapshot = rig.run(10);
   EXPECT_EQ(snapshot.faults, 0u);
   EXPECT_EQ(snapshot.faults_latched, loop_fault::kBadSample);
   EXPECT_NE(snapshot.limiter_flags & force_limit::kRamping, 0u);
   EXPECT_LT(snapshot.rendered_N, 0.2);
   EXPECT_NEAR(rig.run(200).rendered_N, 1.5, 1e-9);
+  away_m = 0.03;  // suddenly elsewhere
+  EXPECT_EQ(rig.run(50).faults, loop_fault::kStaleSample);
+  EXPECT_EQ(device.force_N(), 0.0);
+  EXPECT_LT(rig.run(60).rendered_N, 2.0);
+  EXPECT_GT(rig.run(200).rendered_N, 9.0);
 }
 
 TEST(LiveTick, WithoutModelsShowsTheToolAndNoForce) {

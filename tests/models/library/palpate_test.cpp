@@ -406,6 +406,15 @@ TEST_F(LibraryC, NoForceIsReducedInSilence) {
     loop.call(std::pair{loop.time_s, NAN});
     EXPECT_NE(palpate_limiter_flags(limiter.get()) & PALPATE_LIMIT_STOPPED, 0U);
   }
+  // A pause of a minute is no delay for longer than it takes to forget one of 1/16 s.
+  const StreamPtr paused = stream(model, {1e-5, 0.0, 0.0, 0.0});
+  const LimiterHandle after = default_limiter();
+  OwnLoop loop{paused.get(), after.get()};
+  loop.press();
+  loop.time_s += 60.0;
+  palpate_limiter_render(after.get(), paused.get(), loop.time_s, loop.position_m, 60.0);
+  for (int i = 0; i < 10000; ++i) loop.call();
+  EXPECT_GE(palpate_limiter_stiffness_share(after.get()), 0.95);
   // A press in 0.2 s and back in 40 ms, with the force 5 ms late.
   const StreamPtr one = stream(model, {1e-5, 0.0, 0.0, 0.0});
   const LimiterHandle limiter = default_limiter();
