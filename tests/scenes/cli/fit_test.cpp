@@ -189,7 +189,7 @@ TEST_F(FitVerb, AFolderIsFittedFileByFileAndContinued) {
   EXPECT_EQ(run.exit_code, 1);
   EXPECT_TRUE(has_parts(run.out, {"3 of 4 recordings are done, 3 of them before"}));
   EXPECT_TRUE(has_parts(
-      run.err, {"error: 1 of 4 recordings are not done; none of them can be used as it is:", "\n  " + in + "/d.csv"}));
+      run.err, {"error: 1 of 4 recordings are not done; correct what is said of them, then", "\n  " + in + "/d.csv"}));
   EXPECT_EQ(run.err.find("d.csv"), run.err.rfind("d.csv"));
   EXPECT_TRUE(has_parts(read_text(out + "/models.csv"), {"\nc,trend,1000,", "\nd,,,,,", "d.csv"}));
   std::filesystem::remove(in + "/d.csv");
